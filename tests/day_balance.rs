@@ -12,7 +12,7 @@ use nalgebra::Quaternion;
 use crate::util::SCENARIOS;
 
 /// The day in two hours, with each of its modes, and rows at the ends and in the middle of the law's periods of 0.5 s.
-const SHORT: [(&str, &str); 7] = [
+pub const SHORT: [(&str, &str); 7] = [
     ("duration = 86400.0", "duration = 7200.0"),
     ("log.period = 20.0", "log.period = 0.25"),
     ("run_time > 17600", "run_time > 4800"),

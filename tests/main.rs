@@ -134,11 +134,15 @@ mod flight_analysis;
 #[cfg(feature = "flight-code")]
 mod flight_code;
 #[cfg(feature = "flight-code")]
+mod flight_cubesat;
+#[cfg(feature = "flight-code")]
 mod flight_exports;
 #[cfg(feature = "flight-code")]
 mod flight_guests;
 #[cfg(feature = "flight-code")]
 mod flight_pages;
+#[cfg(feature = "flight-code")]
+mod flight_parameters;
 mod foreign;
 #[cfg(feature = "full")]
 mod foreign_campaigns;

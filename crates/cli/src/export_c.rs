@@ -38,7 +38,7 @@ pub struct ExportCArgs {
     /// Add the control system as an app of cFS or a component of F Prime; may be given twice
     #[arg(long, value_name = "GUEST")]
     guest: Vec<GuestName>,
-    /// Fail if a part of the control loop is not in the code
+    /// Fail if a part of the control loop is not in the code; guidance and ephemerides are inputs
     #[arg(long)]
     complete: bool,
     /// Replace files of other content in DIR
@@ -109,7 +109,7 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
     let package = package::export(&scenario, origin, &prefix, args.calls as usize, &guests)
         .map_err(|error| refused(&args.scenario, error))?;
     if args.complete
-        && let Some(part) = package.excluded_parts.first()
+        && let Some(part) = package.excluded_parts.iter().find(|part| !part.is_supplied)
     {
         let reason = format!(
             "is not part of the exported code, and you would have to {}: without `--complete` the rest is exported",
@@ -131,7 +131,8 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         package.vectors
     );
     for part in &package.excluded_parts {
-        eprintln!("not part of it: {}; you must {}", part.key, part.duty);
+        let what = if part.is_supplied { "input of it" } else { "not part of it" };
+        eprintln!("{what}: {}; you must {}", part.key, part.duty);
     }
     eprintln!("`make -C {} check` compares them by bits", args.out.display());
     for guest in guests {

@@ -76,5 +76,5 @@ pub use flexsc_formats::document::{Diagnostic, Document, LONGEST, ScenarioError,
 pub use flexsc_scenario::Scenario;
 pub use flexsc_sim::{
     ControlCall, ControlDecision, ModeTrial, QuantityField, QuantityGroup, SensorSample, SensorTelemetry,
-    Simulation, SimulationError, StopAt, Telemetry, TelemetryLayout, TelemetrySensor,
+    Simulation, SimulationError, StopAt, Telemetry, TelemetryLayout, TelemetrySensor, UnloadingCall,
 };

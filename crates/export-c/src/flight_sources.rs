@@ -14,7 +14,7 @@ macro_rules! sources {
 }
 
 /// Number of files.
-const COUNT: usize = 49;
+const COUNT: usize = 51;
 
 /// Returns the source files of the flight code.
 pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
@@ -44,12 +44,14 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "jet_pulses",
         "kalman",
         "kalman_axis",
+        "magnetorquers",
         "maths",
         "matrix3",
         "matrix6",
         "mode_condition",
         "mode_readings",
         "mode_supervisor",
+        "momentum_unloading",
         "payne_hanek",
         "pd",
         "phase_plane",

@@ -246,7 +246,8 @@ impl AttitudeHistory {
         observations: &mut [DelayedObservation],
     ) -> Correction {
         if !self.is_held(entries, observations) {
-            return Correction::NONE;
+            self.refused += 1;
+            return Correction::unused(ReadingStatus::Untimely);
         }
         if !observation.observation.is_sound() {
             self.refused += 1;

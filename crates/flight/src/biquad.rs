@@ -12,13 +12,16 @@ pub struct BiquadFilter {
 }
 
 impl BiquadFilter {
-    /// Filters a sample and returns the output.
+    /// Filters a sample and returns the output. One that is not finite leaves the state as it was.
     #[inline]
     pub fn filter(&mut self, sample: f64) -> f64 {
         let output: f64 = self.numerator[0] * sample + self.state[0];
         let first: f64 = self.numerator[1] * sample - self.denominator[0] * output + self.state[1];
-        self.state[1] = self.numerator[2] * sample - self.denominator[1] * output;
-        self.state[0] = first;
+        let second: f64 = self.numerator[2] * sample - self.denominator[1] * output;
+        if first.is_finite() && second.is_finite() {
+            self.state[0] = first;
+            self.state[1] = second;
+        }
         output
     }
 }

@@ -77,7 +77,8 @@ fn row_product(matrices: &[f64], start: usize, vector: &[f64]) -> f64 {
     sum
 }
 
-/// Writes the outputs of a sample, each within the range, and advances the state. `next` is a buffer as long as the state.
+/// Writes the outputs of a sample, each within the range, and advances the state, which stays where it would not be finite. `next` is a buffer as
+/// long as the state.
 pub fn advance(
     matrices: &[f64],
     inputs: &[f64],
@@ -96,11 +97,15 @@ pub fn advance(
         }
         outputs[row] = clamp(range.gain * output, -range.limit, range.limit);
     }
+    let mut is_finite: bool = true;
     for row in 0..order {
         let start: usize = row * width;
         next[row] = row_product(matrices, start, state) + row_product(matrices, start + order, inputs);
+        is_finite = is_finite && next[row].is_finite();
     }
-    for row in 0..order {
-        state[row] = next[row];
+    if is_finite {
+        for row in 0..order {
+            state[row] = next[row];
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Pulses of jets in groups: for each axis one group that turns the body one way, and one for the other way.
 
 use crate::pulse_width::PulseQuantum;
+use crate::vector3::Vector3;
 
 /// Two groups of jets about an axis, and their pulses.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -43,5 +44,22 @@ impl JetPair {
     pub fn on_time_of_torque(&self, torque: f64) -> f64 {
         let most: f64 = if torque < 0.0 { self.torque_minus } else { self.torque_plus };
         self.signed_on_time(torque, torque.abs() / most * self.period)
+    }
+}
+
+/// Torques about all axes of the two groups of a pair (N m).
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct JetTorques {
+    /// Torque of the group of the positive direction.
+    pub plus: Vector3,
+    /// Torque of the group of the negative direction.
+    pub minus: Vector3,
+}
+
+impl JetTorques {
+    /// Returns the angular impulse (N m s) of an on-time (s), whose sign chooses the group.
+    pub fn impulse(&self, on_time: f64) -> Vector3 {
+        let torque: Vector3 = if on_time < 0.0 { self.minus } else { self.plus };
+        torque.scaled(on_time.abs())
     }
 }

@@ -14,11 +14,12 @@ pub struct RigidRateFilter {
 
 impl RigidRateFilter {
     /// Takes a sample: the measured rate (rad/s), if there is a measurement, and the change of the rate by the pulses since the
-    /// sample before (rad/s).
+    /// sample before (rad/s). Numbers that are not finite are left out.
     #[inline]
     pub fn take(&mut self, is_measured: bool, measured: f64, pushed: f64) {
-        let predicted: f64 = self.rate + pushed + self.drift;
-        let innovation: f64 = if is_measured { measured - predicted } else { 0.0 };
+        let change: f64 = if pushed.is_finite() { pushed } else { 0.0 };
+        let predicted: f64 = self.rate + change + self.drift;
+        let innovation: f64 = if is_measured && measured.is_finite() { measured - predicted } else { 0.0 };
         self.rate = predicted + self.correction * innovation;
         self.drift += 0.25 * self.correction * self.correction * innovation;
     }

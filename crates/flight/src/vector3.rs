@@ -1,5 +1,6 @@
 //! Vectors along the axes of the body or of inertial space.
 
+use crate::maths::max;
 use crate::square_root::sqrt;
 
 /// Vector of three components.
@@ -83,6 +84,13 @@ impl Vector3 {
     #[inline]
     pub fn norm(&self) -> f64 {
         sqrt(self.norm_squared())
+    }
+
+    /// Returns the largest size of a component.
+    #[inline]
+    pub fn largest_size(&self) -> f64 {
+        let most: f64 = max(self.x.abs(), self.y.abs());
+        max(most, self.z.abs())
     }
 
     /// Returns the unit vector in the same direction.

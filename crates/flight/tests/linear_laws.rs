@@ -1,12 +1,19 @@
-//! Compensators against SciPy, Kalman filters against textbook formulas, both by bits against the matrix library; B-dot laws.
+//! Compensators against SciPy, Kalman filters against textbook formulas, both by bits against the matrix library; B-dot laws, and
+//! numbers that are not finite.
 
+use flexsc_flight::attitude_law::AttitudeFeedback;
+use flexsc_flight::axis_motion::{AxisMotion, AxisReference};
 use flexsc_flight::b_dot::{FieldRate, limited_moment, opposing_moment};
+use flexsc_flight::biquad::BiquadFilter;
 use flexsc_flight::compensator::{
     CompensatorQuantity, CompensatorRange, CompensatorSource, advance, read_sources,
 };
+use flexsc_flight::error_measure::ErrorMeasure;
 use flexsc_flight::jet_pulses::JetPair;
 use flexsc_flight::kalman::{self, KalmanInnovation, KalmanSample};
 use flexsc_flight::kalman_axis::{KalmanAxis, KalmanFeed};
+use flexsc_flight::magnetorquers::moment_of_torque;
+use flexsc_flight::momentum_unloading::MomentumUnloading;
 use flexsc_flight::pulse_width::PulseQuantum;
 use flexsc_flight::rigid_rate::RigidRateFilter;
 use flexsc_flight::ticks::Ticks;
@@ -306,4 +313,61 @@ fn a_filter_of_the_rate_follows_its_two_equations() {
     assert!((filter.rate - 1.55e-3).abs() < 1e-18 && (filter.drift - 1.25e-6).abs() < 1e-20);
     filter.take(false, f64::NAN, 0.0);
     assert!((filter.rate - 1.551_25e-3).abs() < 1e-18 && (filter.drift - 1.25e-6).abs() < 1e-20);
+}
+
+#[test]
+fn a_number_that_is_not_one_leaves_no_trace() {
+    let range = CompensatorRange { gain: 1.0, limit: 1.0 };
+    let (mut state, mut next, mut output) = ([0.5, -0.25], [0.0; 2], [0.0; 1]);
+    advance(&MATRICES, &[f64::NAN, 1.0], &mut state, &mut next, &range, &mut output);
+    assert_eq!(state, [0.5, -0.25]);
+    let mut filter =
+        BiquadFilter { numerator: [1.0, 0.5, 0.25], denominator: [-0.5, 0.1], state: [0.1, 0.2] };
+    let before = filter;
+    assert!(filter.filter(f64::NAN).is_nan());
+    assert_eq!(filter, before);
+    let mut rate = RigidRateFilter { correction: 0.1, rate: 1e-3, drift: 0.0 };
+    rate.take(true, f64::NAN, f64::NAN);
+    assert_eq!(rate, RigidRateFilter { correction: 0.1, rate: 1e-3, drift: 0.0 });
+    let mut law = AttitudeFeedback {
+        bandwidth: 0.1,
+        damping: 0.8,
+        measure: ErrorMeasure::Quaternion,
+        period: 0.5,
+        has_rate_limit: false,
+        rate_limit: 0.0,
+        has_integral: true,
+        integral_time: 20.0,
+        integral_limit: 0.5,
+        acceleration_plus: 1.0,
+        acceleration_minus: 1.0,
+        integral: 0.01,
+    };
+    let motion = AxisMotion { angle: f64::NAN, ..AxisMotion::default() };
+    assert!(law.step(&motion, &AxisReference::default(), &mut []).is_nan());
+    assert_eq!(law.integral, 0.01);
+}
+
+#[test]
+fn unloading_begins_above_one_momentum_and_ends_below_another() {
+    let mut law = MomentumUnloading {
+        above: 1.0,
+        below: 0.25,
+        is_magnetic: true,
+        gain: 0.5,
+        period: 1.0,
+        most: f64::INFINITY,
+        is_active: false,
+    };
+    let along_x = |x: f64| Vector3 { x, y: 0.0, z: 0.0 };
+    let torques = [0.5, 1.5, 0.5, 0.25, 0.5, f64::NAN].map(|x| law.torque(&along_x(x)).x);
+    assert_eq!(torques, [0.0, -0.75, -0.25, 0.0, 0.0, 0.0]);
+    // Jets remove it in a period, all axes alike within their torque.
+    (law.is_magnetic, law.period, law.most) = (false, 2.0, 0.25);
+    assert_eq!(law.torque(&Vector3 { x: 2.0, y: -1.0, z: 0.0 }), Vector3 { x: -0.25, y: 0.125, z: -0.0 });
+    // Across the field, a torque is given exactly; along it none is.
+    let (field, limits) = (Vector3 { x: 0.0, y: 0.0, z: 2.0 }, Vector3 { x: 1.0, y: 1.0, z: 1.0 });
+    let moment = moment_of_torque(&Vector3 { x: 1.0, y: -3.0, z: 7.0 }, &field, &limits);
+    assert_eq!(moment, Vector3 { x: 1.0, y: 1.0 / 3.0, z: 0.0 });
+    assert_eq!(moment_of_torque(&along_x(1.0), &Vector3::ZERO, &limits), Vector3::ZERO);
 }

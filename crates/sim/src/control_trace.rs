@@ -1,6 +1,6 @@
 //! Inputs and outputs of the control system at each of its calls, for replays by flight code.
 
-use flexsc_control::actuator::PulsedActuator;
+use flexsc_control::actuator::{MomentumStorage, PulsedActuator};
 use flexsc_control::flight_quantity::FlightQuantity;
 use flexsc_control::law::AxisDecision;
 use flexsc_control::operation::ModeQuantity;
@@ -20,6 +20,23 @@ pub enum ControlCall {
     Mode(ModeTrial),
     /// Decision of the laws, whose commands the actuator takes.
     Decision(ControlDecision),
+    /// Cycle of an actuator that unloads wheels, after the decision of the same instant.
+    Unloading(UnloadingCall),
+}
+
+/// Cycle of an actuator that unloads wheels, with what it read.
+#[derive(Clone, Debug)]
+pub struct UnloadingCall {
+    /// Start of the cycle.
+    pub now: Instant,
+    /// Momentum of the wheels (N m s).
+    pub stored_momentum: [f64; 3],
+    /// Magnetic field in body axes (T), as last measured; `None` without a field.
+    pub field: Option<[f64; 3]>,
+    /// Torque on the body that the wheels counteract from now on (N m).
+    pub counter_torque: [f64; 3],
+    /// Torque of the motor of each wheel on its rotor that is commanded from now on (N m).
+    pub wheel_torques: Vec<f64>,
 }
 
 /// Test of the conditions of a mode of operation, with what the control system knew.
@@ -68,7 +85,8 @@ pub struct ControlDecision {
     pub demanded_torque: [f64; 3],
     /// Signed on-times about the axes (s) of jets in groups that fire once in a period of the law; `None` of other actuators.
     pub on_times: Option<[f64; 3]>,
-    /// Torque of each wheel on its rotor after the command (N m); empty without wheels.
+    /// Commanded torque of the motor of each wheel on its rotor, without failures and limits of its momentum (N m); empty without
+    /// wheels.
     pub wheel_torques: Vec<f64>,
     /// Shift of the angles (rad) by a target that began since the last call; `None` without one.
     pub shift: Option<[f64; 3]>,
@@ -131,9 +149,8 @@ impl Simulation {
             return;
         }
         let shift = self.estimation.last_shift.take();
-        let (actuator, rigid) = (&self.loads.actuator, self.plant.truth().rigid_rate);
+        let actuator = &self.loads.actuator;
         let abilities = actuator.capabilities();
-        let wheels = abilities.momentum.map(|storage| storage.wheels(now, rigid)).unwrap_or_default();
         let mut demanded_torque = [0.0; 3];
         for (axis, torque) in demanded_torque.iter_mut().enumerate().take(self.estimation.axis_count()) {
             *torque = actuator.effort(axis).demanded;
@@ -144,12 +161,26 @@ impl Simulation {
             origin: *self.estimation.origin(),
             stored_momentum: abilities.stored_momentum(now),
             demanded_torque,
-            wheel_torques: wheels.iter().map(|wheel| wheel.torque_nm).collect(),
+            wheel_torques: abilities.momentum.map(MomentumStorage::commanded_torques).unwrap_or_default(),
             on_times: abilities.pulses.and_then(PulsedActuator::commanded_on_times),
             shift,
         };
         if let Some(trace) = &mut self.laws.trace {
             trace.push(ControlCall::Decision(decision));
         }
+    }
+
+    /// Records the cycle of an unloading actuator, if one has begun at this instant.
+    pub(super) fn trace_unloading(&mut self, now: Instant) {
+        let Some(trace) = &mut self.laws.trace else { return };
+        let abilities = self.loads.actuator.capabilities();
+        let Some(cycle) = abilities.unloading.filter(|cycle| cycle.at == Some(now)) else { return };
+        trace.push(ControlCall::Unloading(UnloadingCall {
+            now,
+            stored_momentum: cycle.stored.into(),
+            field: self.sensors.magnetic_field(self.plant.truth()).map(Into::into),
+            counter_torque: cycle.counter.into(),
+            wheel_torques: abilities.momentum.map(MomentumStorage::commanded_torques).unwrap_or_default(),
+        }));
     }
 }

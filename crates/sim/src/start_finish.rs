@@ -15,6 +15,7 @@ impl Simulation {
         self.laws.decide_uncounted(now, Event::Start, &self.guidance, estimates, &speeds);
         self.command_actuator();
         self.loads.apply_due_changes(now, self.plant.truth());
+        self.trace_unloading(now);
         self.begin_segment(record)?;
         if let Some(search) = self.estimation.search().or(self.laws.objective.search()) {
             // The value of a tuned parameter is logged from the start on.

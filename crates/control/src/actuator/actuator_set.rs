@@ -232,6 +232,7 @@ impl Actuator for ActuatorSet {
             pulses: self.has_pulses.then_some(self as &dyn PulsedActuator),
             waveform: Some(self),
             back_emf: self.back_emf,
+            unloading: self.unloader.as_ref().map(|unloader| &unloader.cycle),
         }
     }
 
@@ -255,6 +256,12 @@ impl MomentumStorage for ActuatorSet {
         self.each().flat_map(|actuator| actuator.capabilities().wheels(now, rate)).collect()
     }
 
+    fn commanded_torques(&self) -> Vec<f64> {
+        let keepers =
+            self.keepers.iter().filter_map(|index| self.executing[*index].0.capabilities().momentum);
+        keepers.flat_map(MomentumStorage::commanded_torques).collect()
+    }
+
     fn gyros(&self, now: Instant) -> Option<flexsc_record::ControlMomentGyros> {
         self.each().find_map(|actuator| actuator.capabilities().momentum?.gyros(now))
     }
@@ -276,6 +283,10 @@ impl PulsedActuator for ActuatorSet {
     /// Returns 0: several actuators do not unload others together.
     fn cycle_impulse(&self) -> Vector {
         Vector::zeros()
+    }
+
+    fn commanded_on_times(&self) -> Option<[f64; 3]> {
+        self.pulsed().find_map(PulsedActuator::commanded_on_times)
     }
 
     fn queued_rate_change(&self) -> [f64; 3] {

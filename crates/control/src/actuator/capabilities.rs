@@ -17,6 +17,19 @@ pub struct Capabilities<'a> {
     pub waveform: Option<&'a dyn WaveformActuator>,
     /// Back-EMF torque per unit of the rate about the first axis (N m s), and true if the elastic rate is included.
     pub back_emf: (f64, bool),
+    /// Last cycle of an actuator that unloads wheels or gyros.
+    pub unloading: Option<&'a UnloadingCycle>,
+}
+
+/// Cycle of an actuator that unloads wheels or gyros.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct UnloadingCycle {
+    /// Start of the cycle; `None` before the first one.
+    pub at: Option<Instant>,
+    /// Momentum of the wheels or gyros at its start (N m s).
+    pub stored: Vector,
+    /// Torque on the body that they counteract (N m).
+    pub counter: Vector,
 }
 
 impl Capabilities<'_> {
@@ -49,6 +62,12 @@ pub trait MomentumStorage {
 
     /// Returns the speeds of reaction wheels relative to a body with this rate (rad/s), as available to the drives.
     fn wheel_speeds(&self, _now: Instant, _rate: [f64; 3]) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Returns the commanded torques of the motors of reaction wheels on their rotors (N m), without their failures and limits;
+    /// empty if commands are executed after a delay.
+    fn commanded_torques(&self) -> Vec<f64> {
         Vec::new()
     }
 

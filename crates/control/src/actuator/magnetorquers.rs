@@ -5,7 +5,9 @@
 
 use flexsc_dynamics::wrench::Wrench;
 use flexsc_flight::b_dot::limited_moment;
+use flexsc_flight::magnetorquers::moment_of_torque;
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::flight_types::{from_vector3, to_vector3};
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, Report};
@@ -118,13 +120,9 @@ impl MagnetorquersState {
     /// whole if a limit is exceeded.
     fn give(&mut self, torque: Vector) {
         self.demanded = torque;
-        let moment = self
-            .field
-            .filter(|field| field.norm_squared() > 0.0)
-            .map_or_else(Vector::zeros, |field| field.cross(&torque) / field.norm_squared());
-        let excess =
-            moment.iter().zip(self.limits).map(|(part, limit)| part.abs() / limit).fold(1.0, f64::max);
-        self.moment = moment / excess;
+        let field = self.field.unwrap_or_default();
+        let [torque, field, limits] = [torque, field, self.limits.into()].map(|v: Vector| to_vector3(&v));
+        self.moment = from_vector3(&moment_of_torque(&torque, &field, &limits));
     }
 
     /// Returns the torque in the measured field (N m).

@@ -55,7 +55,9 @@ pub use axis_actuators::{
     AxisActuator, AxisActuatorContext, AxisActuators, AxisProperties, AxisTorques, AxisWaves,
 };
 pub use burns::Burn;
-pub use capabilities::{Capabilities, JetCycle, MomentumStorage, PulsedActuator, WaveformActuator};
+pub use capabilities::{
+    Capabilities, JetCycle, MomentumStorage, PulsedActuator, UnloadingCycle, WaveformActuator,
+};
 pub use control_moment_gyros::{ControlMomentGyros, GimbalArrangement};
 pub use control_moment_gyros_state::ControlMomentGyrosState;
 pub use effort::{ActuatorEvent, AxisEffort, AxisResponse};

@@ -5,14 +5,18 @@
 //! the part of h perpendicular to B (\[Wertz78\]). The part along the field remains until the field rotates along the
 //! orbit: over an orbit h decreases at the mean rate k (1 - <b b'>), with b the field's direction.
 
+use flexsc_flight::momentum_unloading::MomentumUnloading;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::flight_types::{from_vector3, to_vector3};
 use flexsc_numerics::quantity::{NonNegative, Positive, Time};
 use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Actuator, ActuatorEvent, ActuatorKind, Demand, Jets, Magnetorquers, PulsedActuator};
+use super::{
+    Actuator, ActuatorEvent, ActuatorKind, Demand, Jets, Magnetorquers, PulsedActuator, UnloadingCycle,
+};
 
 /// How an actuator of a list unloads the wheels of the list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -91,6 +95,27 @@ impl WheelUnloading {
 }
 
 impl UnloadingTask {
+    /// Returns the period (s) and the phase of the cycles of the actuator.
+    pub fn cycle(&self, kind: &ActuatorKind) -> (Option<Span>, Option<Time>) {
+        match kind {
+            ActuatorKind::Jets(jets) => (jets.period, jets.phase),
+            _ => (self.period, self.phase),
+        }
+    }
+
+    /// Returns the law of the actuator, as flight code has it.
+    pub fn flight_law(&self, kind: &ActuatorKind) -> MomentumUnloading {
+        MomentumUnloading {
+            above: self.above.get(),
+            below: self.below.get(),
+            is_magnetic: self.gain.is_some(),
+            gain: self.gain.map_or(0.0, Positive::get),
+            period: self.cycle(kind).0.unwrap_or(Span::TICK).seconds(),
+            most: self.torque.map_or(f64::INFINITY, Positive::get),
+            is_active: false,
+        }
+    }
+
     /// Checks the settings against the actuator; returns a key and the reason, and true if the key is within the
     /// actuator.
     pub fn fault(&self, kind: &ActuatorKind) -> Option<(ConfigError, bool)> {
@@ -151,36 +176,24 @@ fn validate_jets(jets: &Jets) -> Option<ConfigError> {
 #[derive(Clone, Debug)]
 pub(super) struct UnloaderState {
     pub actuator: Box<dyn Actuator>,
-    /// Momenta (N m s) at which unloading begins and ends.
-    limits: [f64; 2],
-    /// Gain of magnetorquers (1/s).
-    gain: Option<f64>,
-    /// Largest mean torque of jets (N m).
-    torque: f64,
+    law: MomentumUnloading,
     period: Span,
     /// Start of the next cycle.
     next: Instant,
-    active: bool,
-    /// Torque that the wheels counteract (N m).
-    mean: Vector,
+    /// Last cycle.
+    pub cycle: UnloadingCycle,
 }
 
 impl UnloaderState {
     /// Creates the unloader before its first cycle.
     pub fn new(unloads: &UnloadingTask, kind: &ActuatorKind, actuator: Box<dyn Actuator>) -> Self {
-        let (period, phase) = match kind {
-            ActuatorKind::Jets(jets) => (jets.period, jets.phase),
-            _ => (unloads.period, unloads.phase),
-        };
+        let (period, phase) = unloads.cycle(kind);
         Self {
             actuator,
-            limits: [unloads.above.get(), unloads.below.get()],
-            gain: unloads.gain.map(Positive::get),
-            torque: unloads.torque.map_or(f64::INFINITY, Positive::get),
+            law: unloads.flight_law(kind),
             period: period.unwrap_or(Span::TICK),
             next: super::first(phase),
-            active: false,
-            mean: Vector::zeros(),
+            cycle: UnloadingCycle::default(),
         }
     }
 
@@ -191,13 +204,13 @@ impl UnloaderState {
 
     /// Returns true if laws command magnetic moments, so that the magnetorquers do not unload.
     pub fn is_commanded(&self, demands: &[Demand]) -> bool {
-        self.gain.is_some() && demands.iter().any(|demand| matches!(demand, Demand::Moment(_)))
+        self.law.is_magnetic && demands.iter().any(|demand| matches!(demand, Demand::Moment(_)))
     }
 
     /// Executes the demands of laws that command the magnetorquers.
     pub fn execute(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
         self.actuator.command(now, demands, rigid);
-        (self.active, self.mean) = (false, Vector::zeros());
+        (self.law.is_active, self.cycle.counter) = (false, Vector::zeros());
     }
 
     /// Begins a cycle if one is due: if the wheels' momentum `stored` (N m s) is too large, commands a torque that
@@ -214,9 +227,7 @@ impl UnloaderState {
         if begins {
             self.next = now + self.period;
             if !is_commanded {
-                let [above, below] = self.limits;
-                self.active = stored.norm() > if self.active { below } else { above };
-                let demanded = self.torque_demand(stored);
+                let demanded = from_vector3(&self.law.torque(&to_vector3(&stored)));
                 self.actuator.command(now, &demanded.data.0[0].map(Demand::Torque), [0.0; 3]);
             }
         }
@@ -224,27 +235,14 @@ impl UnloaderState {
         if !begins || is_commanded {
             return None;
         }
-        let mean = if self.gain.is_some() {
+        let counter = if self.law.is_magnetic {
             Vector::from_fn(|axis, _| self.actuator.effort(axis).held)
         } else {
             let jets = self.actuator.capabilities().pulses;
             jets.map_or_else(Vector::zeros, PulsedActuator::cycle_impulse) / self.period.seconds()
         };
+        let before = std::mem::replace(&mut self.cycle, UnloadingCycle { at: Some(now), stored, counter });
         // The mean torque of jets is 0 most of the time; that of magnetorquers changes with the field each time.
-        (std::mem::replace(&mut self.mean, mean) != mean || self.gain.is_some()).then_some(mean)
-    }
-
-    /// Returns the torque that reduces the wheels' momentum (N m).
-    fn torque_demand(&self, stored: Vector) -> Vector {
-        if !self.active {
-            return Vector::zeros();
-        }
-        if let Some(gain) = self.gain {
-            return stored * -gain;
-        }
-        let demanded = stored / -self.period.seconds();
-        // The direction is kept if one axis exceeds the limit of the jets.
-        let largest = demanded.amax();
-        if largest > self.torque { demanded * (self.torque / largest) } else { demanded }
+        (before.counter != counter || self.law.is_magnetic).then_some(counter)
     }
 }

@@ -135,6 +135,7 @@ impl AttitudeUnit {
             name: "start",
             about: "Starts the attitude filter at this time with an attitude and a gyro bias; at any time, and again after a fault.",
             is_start: true,
+            period: None,
             inputs: vec![attitude(), Channel::real("bias", "Estimated gyro bias (rad/s)", 3, 1e-5)],
             outputs: vec![attitude()],
         };
@@ -182,6 +183,7 @@ impl AttitudeUnit {
             name: "sample",
             about: "Takes a sample of the sensors.",
             is_start: false,
+            period: None,
             inputs,
             outputs,
         };
@@ -277,12 +279,12 @@ pub(super) fn quaternion(words: &mut WordReader<'_>) -> Quaternion {
     Quaternion { w, x, y, z }
 }
 
-fn vector(words: &mut WordReader<'_>) -> Vector3 {
+pub(super) fn vector(words: &mut WordReader<'_>) -> Vector3 {
     let [x, y, z] = words.reals();
     Vector3 { x, y, z }
 }
 
-fn vector_words(v: &Vector3) -> [u64; 3] {
+pub(super) fn vector_words(v: &Vector3) -> [u64; 3] {
     [v.x, v.y, v.z].map(f64::to_bits)
 }
 

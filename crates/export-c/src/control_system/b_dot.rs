@@ -1,7 +1,6 @@
 //! B-dot laws: samples of the magnetic field in, magnetic moments along the axes out.
 
 use flexsc_core::Scenario;
-use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::control::law::LawKind;
 use flexsc_core::numerics::time::Span;
@@ -9,9 +8,46 @@ use flexsc_flight::b_dot::{FieldRate, limited_moment, opposing_moment};
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
 
+use super::attitude_unit::{vector, vector_words};
 use super::{CallLayout, Channel, NotExportable, WordReader, all_of_kind};
 
-/// B-dot law along each axis, and the rate of change of the field that they read.
+/// Rate of change of the magnetic field that B-dot laws read.
+#[derive(Clone, Debug)]
+pub struct FieldUnit {
+    /// Index of the magnetometer in the scenario.
+    pub sensor: usize,
+    /// Rate of change.
+    pub field: FieldRate,
+}
+
+impl FieldUnit {
+    /// Returns the rate of change by the magnetometer of a scenario.
+    pub(super) fn new(scenario: &Scenario) -> Result<Self, NotExportable> {
+        let sensor = scenario.sensor.iter().position(|sensor| sensor.measures_field());
+        let missing = || NotExportable::new("law.b_dot", "needs a `[sensor.magnetometer]`");
+        Ok(Self { sensor: sensor.ok_or_else(missing)?, field: FieldRate::NONE })
+    }
+
+    /// Returns the function: a sample of the field.
+    pub(super) fn layout() -> CallLayout {
+        CallLayout {
+            inputs: vec![Channel::from_quantity(FlightQuantity::Field, 3, 3e-5)],
+            outputs: vec![Channel::from_quantity(FlightQuantity::FieldRate, 3, 1.0)],
+            ..CallLayout::new(
+                "field",
+                "Takes a sample of the magnetic field; its rate of change is 0 before the second one.",
+            )
+        }
+    }
+
+    /// Takes a sample, and returns the words of the outputs.
+    pub(super) fn take(&mut self, now: Ticks, inputs: &[u64]) -> Vec<u64> {
+        self.field.take(now, &vector(&mut WordReader::new(inputs)));
+        vector_words(&self.field.rate).to_vec()
+    }
+}
+
+/// B-dot law along each axis.
 #[derive(Clone, Debug)]
 pub struct BDotLaws {
     /// Period (s).
@@ -20,10 +56,6 @@ pub struct BDotLaws {
     pub gains: [f64; 3],
     /// Largest moment along each axis (A m²).
     pub limits: [f64; 3],
-    /// Index of the magnetometer in the scenario.
-    pub magnetometer: usize,
-    /// Rate of change of the field.
-    pub field: FieldRate,
 }
 
 impl BDotLaws {
@@ -38,64 +70,56 @@ impl BDotLaws {
             let reason = "has laws with different periods: give them one period";
             return Err(NotExportable::new("law.per_axis", reason));
         }
-        let Some(magnetometer) = scenario.sensor.iter().position(|sensor| sensor.measures_field()) else {
-            return Err(NotExportable::new("law.b_dot", "needs a `[sensor.magnetometer]`"));
-        };
+        let torquers = scenario.actuator.magnetorquers().map(|(torquers, _)| torquers);
         Ok(Self {
             period: Span::seconds(roll.period),
             gains: each.map(|law| law.gain.get()),
-            limits: limits(scenario),
-            magnetometer,
-            field: FieldRate::NONE,
+            limits: [0, 1, 2].map(|axis| torquers.map_or(f64::INFINITY, |of| of.moment.about(axis).get())),
         })
     }
 
-    /// Returns the functions: a sample of the field, and a step of the laws.
-    pub(super) fn calls(&self) -> Vec<CallLayout> {
-        let rate = |scale| Channel::from_quantity(FlightQuantity::FieldRate, 3, scale);
-        let field = Channel::from_quantity(FlightQuantity::Field, 3, 3e-5);
-        let typical = self.limits[0].min(1e6) / self.gains[0];
-        let moment = Channel::real("moment", "Magnetic moment along each axis (A m\u{b2})", 3, 1.0);
-        vec![
-            CallLayout {
-                name: "sample",
-                about: "Takes a sample of the magnetic field; its rate of change is 0 before the second one.",
-                is_start: false,
-                inputs: vec![field],
-                outputs: vec![rate(1.0)],
-            },
-            CallLayout {
-                name: "step",
-                about: "Decides on the magnetic moments of a period.",
-                is_start: false,
-                inputs: vec![rate(typical)],
-                outputs: vec![moment],
-            },
-        ]
+    /// Returns the function: a step of the laws.
+    pub(super) fn layout() -> CallLayout {
+        CallLayout {
+            outputs: vec![moment_channel()],
+            ..CallLayout::new("step", "Decides on the magnetic moments of a period.")
+        }
+    }
+
+    /// Returns the moments (A m²) for a rate of change of the field (T/s).
+    pub fn moment(&self, rate: &Vector3) -> Vector3 {
+        let rates = [rate.x, rate.y, rate.z];
+        let [x, y, z] = [0, 1, 2]
+            .map(|axis| limited_moment(opposing_moment(self.gains[axis], rates[axis]), self.limits[axis]));
+        Vector3 { x, y, z }
+    }
+}
+
+/// Returns the output of magnetic moments.
+pub(super) fn moment_channel() -> Channel {
+    Channel::real("moment", "Magnetic moment along each axis (A m\u{b2})", 3, 1.0)
+}
+
+/// Control system of B-dot laws alone.
+#[derive(Clone, Debug)]
+pub struct BDotSystem {
+    /// Rate of change of the field.
+    pub field: FieldUnit,
+    /// Laws.
+    pub laws: BDotLaws,
+}
+
+impl BDotSystem {
+    /// Returns the control system of a scenario.
+    pub(super) fn new(scenario: &Scenario, laws: &[&LawKind]) -> Result<Self, NotExportable> {
+        Ok(Self { field: FieldUnit::new(scenario)?, laws: BDotLaws::new(scenario, laws)? })
     }
 
     /// Calls a function, and returns the words of its outputs.
     pub(super) fn call(&mut self, call: usize, now: Ticks, inputs: &[u64]) -> Vec<u64> {
-        let [x, y, z] = WordReader::new(inputs).reals();
-        let outputs = if call == 0 {
-            self.field.take(now, &Vector3 { x, y, z });
-            let rate = self.field.rate;
-            [rate.x, rate.y, rate.z]
-        } else {
-            let rates = [x, y, z];
-            [0, 1, 2]
-                .map(|axis| limited_moment(opposing_moment(self.gains[axis], rates[axis]), self.limits[axis]))
-        };
-        outputs.map(f64::to_bits).to_vec()
+        if call == 0 {
+            return self.field.take(now, inputs);
+        }
+        vector_words(&self.laws.moment(&self.field.field.rate)).to_vec()
     }
-}
-
-/// Returns the largest moment of the magnetorquers along each axis (A m²); infinite without magnetorquers.
-fn limits(scenario: &Scenario) -> [f64; 3] {
-    let members = scenario.actuator.members();
-    let torquers = members.iter().find_map(|member| match &*member.kind {
-        ActuatorKind::Magnetorquers(torquers) => Some(torquers.clone()),
-        _ => None,
-    });
-    [0, 1, 2].map(|axis| torquers.as_ref().map_or(f64::INFINITY, |of| of.moment.about(axis).get()))
 }

@@ -55,7 +55,8 @@ impl Channel {
         let FlightDeclaration { channel, unit, meaning, .. } = quantity.declaration();
         let mut about = if unit.is_empty() { meaning.to_owned() } else { format!("{meaning} ({unit})") };
         about[..1].make_ascii_uppercase();
-        Self { quantity: Some(quantity), ..Self::real(channel, &about, count, scale) }
+        let is_unit = quantity == FlightQuantity::TargetAttitude;
+        Self { quantity: Some(quantity), is_unit, ..Self::real(channel, &about, count, scale) }
     }
 
     /// Returns the channel with a limit of the size of its numbers.
@@ -116,6 +117,8 @@ pub struct CallLayout {
     pub about: &'static str,
     /// True if the function is called once, before the others.
     pub is_start: bool,
+    /// Period of the calls (s), if it is another than that of the laws.
+    pub period: Option<f64>,
     /// Inputs.
     pub inputs: Vec<Channel>,
     /// Outputs.
@@ -123,6 +126,11 @@ pub struct CallLayout {
 }
 
 impl CallLayout {
+    /// Returns a function of this name and meaning without inputs and outputs.
+    pub fn new(name: &'static str, about: &'static str) -> Self {
+        Self { name, about, is_start: false, period: None, inputs: Vec::new(), outputs: Vec::new() }
+    }
+
     /// Returns the number of words of the inputs.
     pub fn input_words(&self) -> usize {
         self.inputs.iter().map(|channel| channel.count).sum()

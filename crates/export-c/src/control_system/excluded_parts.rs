@@ -2,8 +2,10 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::control::actuator::ActuatorKind;
+use flexsc_core::control::law::LawKind;
 
 use super::ControlSystem;
+use super::actuation::{Actuation, Executing, are_magnetorquers};
 
 /// Part of the loop that is not in the code.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,61 +14,84 @@ pub struct ExcludedPart {
     pub key: String,
     /// Task of the caller in its place.
     pub duty: String,
-}
-
-/// Contents of the code, as far as they differ between control systems.
-#[derive(Default)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a part that is there or not")]
-struct Included {
-    has_estimator: bool,
-    has_wheels: bool,
-    has_jets: bool,
-    has_moments: bool,
-}
-
-impl Included {
-    fn new(system: &ControlSystem) -> Self {
-        match system {
-            ControlSystem::Relays(_) => Self::default(),
-            ControlSystem::BDot(_) => Self { has_estimator: true, has_moments: true, ..Self::default() },
-            ControlSystem::Sampled(laws) => Self {
-                has_estimator: laws.estimator.is_some()
-                    || laws.filter.is_some()
-                    || laws.rate_filter.is_some(),
-                has_wheels: laws.wheels.is_some(),
-                has_jets: laws.jets.is_some(),
-                has_moments: false,
-            },
-            ControlSystem::Modes(modes) => {
-                let laws = || modes.modes.iter().filter_map(|mode| mode.start.as_ref());
-                Self {
-                    has_estimator: modes.estimator.is_some(),
-                    has_wheels: laws().all(|laws| laws.wheels.is_some()),
-                    has_jets: false,
-                    has_moments: false,
-                }
-            }
-        }
-    }
+    /// True for guidance and ephemerides, whose results are inputs of the code.
+    pub is_supplied: bool,
 }
 
 impl ControlSystem {
-    /// Returns the parts of the scenario's control loop that are not in the code.
-    pub fn excluded_parts(&self, scenario: &Scenario) -> Vec<ExcludedPart> {
-        let included = Included::new(self);
-        let mut parts = Vec::new();
-        let mut add = |key: String, duty: &str| parts.push(ExcludedPart { key, duty: duty.to_owned() });
-        if let Some(estimator) = &scenario.estimator {
-            let is_read = !estimator.offers().is_assessed_only;
-            if is_read && !included.has_estimator {
-                add(format!("estimator.{}", estimator.kind()), "supply its estimates as inputs");
-            }
+    /// Returns the actuators that the code commands.
+    fn actuation(&self) -> Option<&Actuation> {
+        match self {
+            Self::Relays(_) | Self::BDot(_) => None,
+            Self::Sampled(laws) => Some(&laws.actuation),
+            Self::Modes(modes) => Some(&modes.actuation),
         }
-        for member in scenario.actuator.members() {
+    }
+
+    /// Returns true if an estimator is part of the code, or if its laws read none.
+    fn has_estimator(&self) -> bool {
+        match self {
+            Self::Relays(_) => false,
+            Self::BDot(_) => true,
+            Self::Sampled(laws) => {
+                laws.estimator.is_some() || laws.filter.is_some() || laws.rate_filter.is_some()
+            }
+            Self::Modes(modes) => modes.estimator.is_some(),
+        }
+    }
+
+    /// Returns the parts of the scenario's control loop that are not in the code: those of the loop first, then those whose results
+    /// are inputs.
+    pub fn excluded_parts(&self, scenario: &Scenario) -> Vec<ExcludedPart> {
+        let mut parts = Vec::new();
+        let mut add = |key: String, duty: &str, is_supplied: bool| {
+            parts.push(ExcludedPart { key, duty: duty.to_owned(), is_supplied });
+        };
+        if let Some(estimator) = &scenario.estimator
+            && !estimator.offers().is_assessed_only
+            && !self.has_estimator()
+        {
+            add(format!("estimator.{}", estimator.kind()), "supply its estimates as inputs", false);
+        }
+        self.actuators_left_out(scenario, &mut |key, duty| add(key, duty, false));
+        let references = self.estimator().map_or(&[][..], |unit| &unit.correctors);
+        for corrector in references.iter().filter(|corrector| corrector.is_of_vector()) {
+            let duty =
+                "supply the reference of its vector at each exposure, in inertial axes, from an ephemeris";
+            add(scenario.sensor_key(corrector.sensor), duty, true);
+        }
+        if !scenario.target.is_empty() || scenario.mode.iter().any(|mode| mode.target.is_some()) {
+            let duty = "supply the target attitude, and angle, rate and acceleration of a slew's reference";
+            add("target".to_owned(), duty, true);
+        }
+        if scenario.manoeuvre.is_some() {
+            let duty = "supply the reference motion and the waveform of the manoeuvre";
+            add("manoeuvre".to_owned(), duty, false);
+        }
+        parts
+    }
+
+    /// Adds the actuators that are not in the code.
+    fn actuators_left_out(&self, scenario: &Scenario, add: &mut dyn FnMut(String, &str)) {
+        let actuation = self.actuation();
+        let has_wheels = actuation.is_some_and(|own| own.wheels.is_some());
+        let members = scenario.actuator.members();
+        let executing = Executing::all(scenario, &members);
+        let mut with_torquers = executing.iter().filter(|own| own.has(are_magnetorquers));
+        let has_moments = with_torquers.all(|own| matches!(own.law, LawKind::BDot(_)));
+        for member in &members {
             let key = member.key.clone();
+            if !member.executes() {
+                // B-dot laws alone command the magnetorquers, and do not unload.
+                let is_included = actuation.is_none_or(|own| own.unloading.is_some());
+                if !is_included {
+                    add(member.unloading_key(), "unload the momentum of the wheels");
+                }
+                continue;
+            }
             match &*member.kind {
                 ActuatorKind::Wheels(wheels) => {
-                    if !included.has_wheels {
+                    if !has_wheels {
                         add(key.clone(), "distribute the torque to the wheels, within their limits");
                     }
                     let extras = [
@@ -76,40 +101,21 @@ impl ControlSystem {
                             wheels.compensation.is_some(),
                             "compensate the friction of the wheels",
                         ),
-                        ("unloading", wheels.unloading.is_some(), "unload the momentum of the wheels"),
                     ];
                     for (name, _, duty) in extras.into_iter().filter(|(_, exists, _)| *exists) {
                         add(format!("{key}.{name}"), duty);
                     }
                 }
                 ActuatorKind::ControlMomentGyros(_) => add(key, "steer the gimbals that give the torque"),
-                ActuatorKind::Jets(_) if !included.has_jets => {
+                ActuatorKind::Jets(_) if actuation.is_none_or(|own| own.jets.is_none()) => {
                     add(key, "give the commands by on-times of the jets");
                 }
                 ActuatorKind::Thrusters(_) => add(key, "give the torque by the thrusters"),
-                ActuatorKind::Magnetorquers(_) if !included.has_moments => {
+                ActuatorKind::Magnetorquers(_) if !has_moments => {
                     add(key, "give the torque by magnetic moments");
                 }
                 _ => {}
             }
         }
-        let references = self.estimator().map_or(&[][..], |unit| &unit.correctors);
-        for corrector in references.iter().filter(|corrector| corrector.is_of_vector()) {
-            let key = scenario.sensor_key(corrector.sensor);
-            add(
-                key,
-                "supply the reference of its vector at each exposure, in inertial axes, from an ephemeris",
-            );
-        }
-        if !scenario.target.is_empty() || scenario.mode.iter().any(|mode| mode.target.is_some()) {
-            add(
-                "target".to_owned(),
-                "supply the target attitude, and angle, rate and acceleration of a slew's reference",
-            );
-        }
-        if scenario.manoeuvre.is_some() {
-            add("manoeuvre".to_owned(), "supply the reference motion and the waveform of the manoeuvre");
-        }
-        parts
     }
 }

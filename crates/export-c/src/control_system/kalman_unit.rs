@@ -113,6 +113,7 @@ impl KalmanUnit {
             name: "start",
             about: "Starts the Kalman filters with the mean of their state.",
             is_start: true,
+            period: None,
             inputs: vec![Channel::real("mean", about, states, 1e-3)],
             outputs: vec![angle("Rigid angle about each axis (rad)", 1.0)],
         };
@@ -130,6 +131,7 @@ impl KalmanUnit {
             name: "sample",
             about: "Takes a sample of the sensors, at their period.",
             is_start: false,
+            period: None,
             inputs: vec![
                 Channel::real("moment", moment, axes, 1e-4),
                 Channel::flag("is_measured", "True if there is a measurement", 1),
@@ -142,6 +144,7 @@ impl KalmanUnit {
             name: "shift",
             about: "Shifts the angles when a new target begins, before a sample or step of that time.",
             is_start: false,
+            period: None,
             inputs: vec![Channel::real("shift", "Change of the angle about each axis (rad)", axes, 1e-3)],
             outputs: vec![angle("Estimated angle about each axis (rad)", 1.0)],
         };

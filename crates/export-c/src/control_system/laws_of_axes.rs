@@ -1,19 +1,14 @@
-//! Laws about the axes of a scenario as plain code, and the wheels that give their torques.
+//! Laws about the axes of a scenario as plain code.
 
 use flexsc_core::Scenario;
-use flexsc_core::control::actuator::{ActuatorKind, FiringMethod, jet_pair};
 use flexsc_core::control::law::{Authority, Compensator, LawKind};
-use flexsc_core::numerics::quantity::Positive;
-use flexsc_core::numerics::time::Span;
 use flexsc_flight::attitude_law::AttitudeFeedback;
 use flexsc_flight::axis_motion::{AxisMotion, AxisReference};
 use flexsc_flight::biquad::BiquadFilter;
 use flexsc_flight::gain_schedule::SchedulePoint;
-use flexsc_flight::jet_pulses::JetPair;
 use flexsc_flight::pd::PdLaw;
 use flexsc_flight::phase_plane::PhasePlaneLaw;
 use flexsc_flight::vector3::Vector3;
-use flexsc_flight::wheel_allocation::AllocatedWheel;
 
 use super::{NotExportable, all_of_kind};
 
@@ -28,17 +23,6 @@ pub enum LawsOfAxes {
     Attitude(Vec<(AttitudeFeedback, Vec<BiquadFilter>)>),
     /// Compensators: one about each axis, or one about three axes together.
     StateSpace(Vec<Compensator>),
-}
-
-/// Distribution of torques to reaction wheels.
-#[derive(Clone, Debug)]
-pub struct WheelDistribution {
-    /// Wheels.
-    pub wheels: Vec<AllocatedWheel>,
-    /// Largest torque of a wheel (N m).
-    pub limit: f64,
-    /// True if the largest torque is minimised.
-    pub is_least_largest: bool,
 }
 
 /// Returns the laws about the axes.
@@ -94,32 +78,6 @@ pub(super) fn laws_of_axes(
             Err(NotExportable::new(format!("law.{kind}"), reason))
         }
     }
-}
-
-/// Returns the distribution of torques to the wheels of a scenario; `None` if other actuators act too, or if the drives add
-/// torques of their own.
-pub(super) fn wheels(scenario: &Scenario) -> Option<WheelDistribution> {
-    let ActuatorKind::Wheels(wheels) = scenario.actuator.only_actuator()? else { return None };
-    let allocation = scenario.study.wheels.as_ref()?;
-    if wheels.speed_bias.is_some() || wheels.compensation.is_some() || wheels.unloading.is_some() {
-        return None;
-    }
-    Some(WheelDistribution {
-        wheels: allocation.flight_wheels().to_vec(),
-        limit: wheels.torque.map_or(f64::INFINITY, Positive::get),
-        is_least_largest: allocation.is_least_largest(),
-    })
-}
-
-/// Returns the groups of jets about the axes of a scenario; `None` if other actuators act too, if their thrusters are commanded one
-/// by one, or if their period is not the law's.
-pub(super) fn jets(scenario: &Scenario, period: Span) -> Option<Vec<JetPair>> {
-    let ActuatorKind::Jets(jets) = scenario.actuator.only_actuator()? else { return None };
-    let groups = scenario.study.groups.as_ref()?;
-    if jets.allocation != FiringMethod::Groups || jets.period.is_some() {
-        return None;
-    }
-    Some([0, 1, 2].map(|axis| jet_pair(groups, axis, period, jets.pulse_width())).to_vec())
 }
 
 /// Returns the commands of compensators: torques, or accelerations with those of the reference.

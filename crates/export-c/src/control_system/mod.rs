@@ -1,5 +1,6 @@
 //! Control system of a scenario: its plain laws about each axis, and what distributes their commands.
 
+mod actuation;
 mod attitude_unit;
 mod b_dot;
 mod channel;
@@ -18,14 +19,15 @@ use flexsc_core::Scenario;
 use flexsc_core::control::law::LawKind;
 use flexsc_flight::ticks::Ticks;
 
+pub use actuation::{Actuation, UnloadingDevice};
 pub use attitude_unit::{AttitudeUnit, Corrector};
-pub use b_dot::BDotLaws;
+pub use b_dot::{BDotLaws, BDotSystem, FieldUnit};
 pub use channel::{CallLayout, Channel, NumberKind, WordReader};
 pub use excluded_parts::ExcludedPart;
 pub use kalman_unit::{AxisFilter, KalmanUnit};
-pub use laws_of_axes::{LawsOfAxes, WheelDistribution};
+pub use laws_of_axes::LawsOfAxes;
 pub use mode_inputs::{ModeInputs, ReadingFormula};
-pub use mode_system::{LawsOfMode, ModeSystem};
+pub use mode_system::{LawsOfMode, ModeLaws, ModeSystem};
 pub use rate_unit::RateUnit;
 pub use relays::Relays;
 pub use sampled_laws::SampledLaws;
@@ -62,7 +64,7 @@ pub enum ControlSystem {
     /// Laws that decide at their period.
     Sampled(Box<SampledLaws>),
     /// B-dot laws, which read the change of the magnetic field.
-    BDot(BDotLaws),
+    BDot(BDotSystem),
     /// Laws of modes of operation under a supervisor, or stages of a law.
     Modes(Box<ModeSystem>),
 }
@@ -84,7 +86,7 @@ impl ControlSystem {
         }
         match laws.first() {
             Some(LawKind::Relay(_)) => Ok(Self::Relays(Relays::new(&laws)?)),
-            Some(LawKind::BDot(_)) => Ok(Self::BDot(BDotLaws::new(scenario, &laws)?)),
+            Some(LawKind::BDot(_)) => Ok(Self::BDot(BDotSystem::new(scenario, &laws)?)),
             _ => Ok(Self::Sampled(Box::new(SampledLaws::new(scenario, &laws)?))),
         }
     }
@@ -101,7 +103,7 @@ impl ControlSystem {
         match self {
             Self::Relays(relays) => relays.calls(),
             Self::Sampled(laws) => laws.calls(),
-            Self::BDot(laws) => laws.calls(),
+            Self::BDot(_) => vec![FieldUnit::layout(), BDotLaws::layout()],
             Self::Modes(modes) => modes.calls(),
         }
     }
@@ -111,12 +113,13 @@ impl ControlSystem {
         match self {
             Self::Relays(relays) => relays.call(call, now, inputs),
             Self::Sampled(laws) => laws.call(call, now, inputs),
-            Self::BDot(laws) => laws.call(call, now, inputs),
+            Self::BDot(system) => system.call(call, now, inputs),
             Self::Modes(modes) => modes.call(call, now, inputs),
         }
     }
 
-    /// Returns laws that decide at their period without their estimator and the on-times of jets: they read estimates.
+    /// Returns laws that decide at their period without their estimator, the on-times of jets and the unloading of wheels: they
+    /// read estimates.
     #[must_use]
     pub fn on_estimates(mut self) -> Self {
         if let Self::Sampled(laws) = &mut self {
@@ -139,7 +142,7 @@ impl ControlSystem {
         match self {
             Self::Relays(_) => 0.1,
             Self::Sampled(laws) => laws.period,
-            Self::BDot(laws) => laws.period,
+            Self::BDot(system) => system.laws.period,
             Self::Modes(modes) => modes.period(),
         }
     }

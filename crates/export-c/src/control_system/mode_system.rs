@@ -12,7 +12,9 @@ use flexsc_flight::quaternion::Quaternion;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
 
-use super::attitude_unit::{AttitudeUnit, quaternion};
+use super::actuation::{Actuation, Executing, are_jets, are_magnetorquers, are_wheels};
+use super::attitude_unit::{AttitudeUnit, quaternion, vector, vector_words};
+use super::b_dot::{BDotLaws, FieldUnit};
 use super::mode_inputs::ModeInputs;
 use super::{CallLayout, Channel, NotExportable, SampledLaws, WordReader};
 
@@ -21,10 +23,55 @@ use super::{CallLayout, Channel, NotExportable, SampledLaws, WordReader};
 pub struct LawsOfMode {
     /// Name of the mode in C.
     pub name: String,
-    /// Laws as they start; `None` of an open loop.
-    pub start: Option<SampledLaws>,
+    /// Laws as they start.
+    pub start: ModeLaws,
     /// Laws in the run.
-    current: Option<SampledLaws>,
+    current: ModeLaws,
+    /// True if wheels execute their commands.
+    pub drives_wheels: bool,
+    /// True if jets execute their commands.
+    pub fires_jets: bool,
+}
+
+/// Laws of a mode by what they read.
+#[derive(Clone, Debug)]
+pub enum ModeLaws {
+    /// Open loop, without commands.
+    Open,
+    /// B-dot laws, which read the rate of change of the magnetic field.
+    BDot(BDotLaws),
+    /// Laws that read estimates.
+    OnEstimates(Box<SampledLaws>),
+}
+
+impl ModeLaws {
+    /// Returns the laws that read estimates.
+    pub fn on_estimates(&self) -> Option<&SampledLaws> {
+        if let Self::OnEstimates(laws) = self { Some(laws) } else { None }
+    }
+
+    /// Returns the B-dot laws.
+    pub fn b_dot(&self) -> Option<&BDotLaws> {
+        if let Self::BDot(laws) = self { Some(laws) } else { None }
+    }
+
+    /// Returns the period (s); `None` of an open loop.
+    fn period(&self) -> Option<f64> {
+        match self {
+            Self::Open => None,
+            Self::BDot(laws) => Some(laws.period),
+            Self::OnEstimates(laws) => Some(laws.period),
+        }
+    }
+
+    /// Returns the function that decides; `None` of an open loop.
+    fn layout(&self) -> Option<CallLayout> {
+        match self {
+            Self::Open => None,
+            Self::BDot(_) => Some(BDotLaws::layout()),
+            Self::OnEstimates(laws) => Some(laws.layout()),
+        }
+    }
 }
 
 /// Inputs and outputs of a step: every call looks words up by their names.
@@ -39,16 +86,16 @@ struct StepLayout {
 }
 
 impl StepLayout {
-    fn new(modes: &[LawsOfMode], has_estimator: bool) -> Self {
-        let laws: Vec<Option<CallLayout>> =
-            modes.iter().map(|mode| mode.start.as_ref().map(SampledLaws::layout)).collect();
+    fn new(modes: &[LawsOfMode], has_estimator: bool, actuation: &Actuation) -> Self {
+        let laws: Vec<Option<CallLayout>> = modes.iter().map(|mode| mode.start.layout()).collect();
         let mut inputs = each_once(laws.iter().flatten().flat_map(|layout| &layout.inputs));
         if has_estimator {
             let estimates = [FlightQuantity::Angle, FlightQuantity::Rate];
             inputs.retain(|channel| !channel.quantity.is_some_and(|own| estimates.contains(&own)));
             inputs.insert(0, Channel::from_quantity(FlightQuantity::TargetAttitude, 4, 1.0));
         }
-        let outputs = each_once(laws.iter().flatten().flat_map(|layout| &layout.outputs));
+        let mut outputs = each_once(laws.iter().flatten().flat_map(|layout| &layout.outputs));
+        outputs.extend(actuation.channels());
         Self { inputs, outputs, laws }
     }
 }
@@ -75,8 +122,18 @@ pub struct ModeSystem {
     pub modes: Vec<LawsOfMode>,
     /// Attitude filter that the laws read; without one the estimates are inputs.
     pub estimator: Option<AttitudeUnit>,
+    /// Rate of change of the field that B-dot laws read.
+    pub field: Option<FieldUnit>,
+    /// Actuators that give the commands.
+    pub actuation: Actuation,
+    /// Moment of the magnetorquers (A m²), if laws command it.
+    moment: Vector3,
+    /// True if magnetorquers execute commands of laws, and do not unload wheels: then they have no moment in other modes.
+    pub clears_moment: bool,
     /// Inputs of the supervisor.
     pub inputs: ModeInputs,
+    /// True if each mode has its target: at a change the angles move from one to the other.
+    pub moves_angles: bool,
     /// Angle from the target of the mode before, and that target, from a change on to the next step.
     moved: Option<(Vector3, Quaternion)>,
     /// Inputs and outputs of a step.
@@ -90,6 +147,8 @@ impl ModeSystem {
         let has_modes = !scenario.mode.is_empty();
         let mut tables = if has_modes { scenario.mode_tables() } else { ModeTables::from_stages(stages) };
         let mut modes: Vec<LawsOfMode> = Vec::new();
+        let members = scenario.actuator.members();
+        let executing = Executing::all(scenario, &members);
         for (index, written) in tables.names.iter().enumerate() {
             let (place, what) = if has_modes {
                 (format!("mode[{index}]"), format!("the mode `{written}`"))
@@ -106,13 +165,32 @@ impl ModeSystem {
             if modes.iter().any(|mode| mode.name == name) {
                 name = format!("{name}_{index}");
             }
-            modes.push(LawsOfMode { name, current: start.clone(), start });
+            let [drives_wheels, fires_jets] = [are_wheels, are_jets].map(|is| executing[index].has(is));
+            modes.push(LawsOfMode { name, current: start.clone(), start, drives_wheels, fires_jets });
         }
+        let has_b_dot = modes.iter().any(|mode| mode.start.b_dot().is_some());
+        let field = has_b_dot.then(|| FieldUnit::new(scenario)).transpose()?;
+        let actuation = Actuation::new(scenario);
+        let clears_moment = executing.iter().any(|own| own.has(are_magnetorquers));
         let estimator = AttitudeUnit::new(scenario).filter(|_| scenario.study.axes.len() == 3);
-        let inputs = ModeInputs::new(scenario, &tables, estimator.is_some());
+        let moves_angles = has_modes && estimator.is_some();
+        let inputs = ModeInputs::new(scenario, &tables, moves_angles);
         let supervisor = ModeSupervisor::start(Ticks::default(), &mut tables.modes, &mut tables.exits);
-        let layout = Arc::new(StepLayout::new(&modes, estimator.is_some()));
-        Ok(Self { tables, supervisor, modes, estimator, inputs, moved: None, layout })
+        let layout = Arc::new(StepLayout::new(&modes, estimator.is_some(), &actuation));
+        Ok(Self {
+            tables,
+            supervisor,
+            modes,
+            estimator,
+            field,
+            actuation,
+            moment: Vector3::ZERO,
+            clears_moment,
+            inputs,
+            moves_angles,
+            moved: None,
+            layout,
+        })
     }
 
     /// Starts the supervisor and the attitude filter again at a time, as `init` does.
@@ -125,7 +203,7 @@ impl ModeSystem {
 
     /// Returns the shortest period of the laws (s).
     pub(super) fn period(&self) -> f64 {
-        let periods = self.modes.iter().filter_map(|mode| mode.start.as_ref()).map(|laws| laws.period);
+        let periods = self.modes.iter().filter_map(|mode| mode.start.period());
         let shortest = periods.fold(f64::INFINITY, f64::min);
         if shortest.is_finite() { shortest } else { 1.0 }
     }
@@ -137,6 +215,7 @@ impl ModeSystem {
             name: "enter",
             about: "Enters a mode by command, as if a condition had been met.",
             is_start: true,
+            period: None,
             inputs: vec![mode()],
             outputs: vec![mode()],
         };
@@ -145,6 +224,7 @@ impl ModeSystem {
             name: "supervise",
             about: "Tests the conditions of the present mode, and changes the mode if one is met; it comes before the step of the same time.",
             is_start: false,
+            period: None,
             inputs: self.inputs.channels.clone(),
             outputs: vec![
                 mode(),
@@ -167,11 +247,14 @@ impl ModeSystem {
             name: "step",
             about: "Decides by the laws of the present mode on the commands of a period; outputs that these laws do not have are 0.",
             is_start: false,
+            period: None,
             inputs: self.layout.inputs.clone(),
             outputs,
         };
         let estimator = self.estimator.iter().flat_map(AttitudeUnit::calls);
-        estimator.chain([enter, supervise, step]).collect()
+        let field = self.field.iter().map(|_| FieldUnit::layout());
+        let unload = self.actuation.unload_layout();
+        estimator.chain(field).chain([enter, supervise]).chain(unload).chain([step]).collect()
     }
 
     /// Returns the index of a function; the calls of the attitude filter come first.
@@ -181,14 +264,38 @@ impl ModeSystem {
 
     /// Calls the function with this index, and returns the words of its outputs.
     pub(super) fn call(&mut self, call: usize, now: Ticks, inputs: &[u64]) -> Vec<u64> {
-        let estimator_calls = if self.estimator.is_some() { 2 } else { 0 };
-        match (call.checked_sub(estimator_calls), &mut self.estimator) {
-            (None, Some(estimator)) if call == 0 => estimator.start(now, inputs),
-            (None, Some(estimator)) => estimator.sample(now, inputs),
-            (Some(0), _) => self.enter(now, inputs),
-            (Some(1), _) => self.supervise(now, inputs),
+        let mut own = call;
+        if let Some(estimator) = &mut self.estimator {
+            match own {
+                0 => return estimator.start(now, inputs),
+                1 => return estimator.sample(now, inputs),
+                _ => own -= 2,
+            }
+        }
+        if let Some(field) = &mut self.field {
+            if own == 0 {
+                return field.take(now, inputs);
+            }
+            own -= 1;
+        }
+        match own {
+            0 => self.enter(now, inputs),
+            1 => self.supervise(now, inputs),
+            2 if self.actuation.unloading.is_some() => self.unload(inputs),
             _ => self.step(now, inputs),
         }
+    }
+
+    /// Begins a cycle of the unloading, and returns the words of the outputs.
+    fn unload(&mut self, inputs: &[u64]) -> Vec<u64> {
+        let is_detumbling =
+            self.modes.get(self.supervisor.active).is_some_and(|mode| mode.start.b_dot().is_some());
+        let held = is_detumbling.then_some(self.moment);
+        let outputs = self.actuation.unload(inputs, held);
+        if self.actuation.unloads_by_magnetorquers() && held.is_none() {
+            self.moment = vector(&mut WordReader::new(&outputs));
+        }
+        outputs
     }
 
     /// Enters a mode by command, and returns the words of the outputs.
@@ -216,7 +323,7 @@ impl ModeSystem {
             self.supervisor.test(now, &readings, modes, exits, steps);
         if has_changed {
             self.start_laws();
-            if let Some(unit) = &self.estimator {
+            if let Some(unit) = self.estimator.as_ref().filter(|_| self.moves_angles) {
                 let target = ModeInputs::target(inputs);
                 let angle = target.rotation_to(&unit.estimator.attitude(now, &unit.entries));
                 self.moved = Some((angle, target));
@@ -255,8 +362,20 @@ impl ModeSystem {
         }
         let active = self.supervisor.active;
         let mut outputs = vec![0; layout.outputs.iter().map(|channel| channel.count).sum()];
-        let laws = self.modes.get_mut(active).and_then(|mode| mode.current.as_mut());
-        if let (Some(laws), Some(Some(own))) = (laws, layout.laws.get(active)) {
+        let mut place = |name: &str, found: &[u64]| {
+            let place = first_word(&layout.outputs, name);
+            outputs[place..place + found.len()].copy_from_slice(found);
+        };
+        let Some(mode) = self.modes.get_mut(active) else { return Vec::new() };
+        let (mut torque, mut on_times) = (Vector3::ZERO, Vec::new());
+        if self.clears_moment {
+            self.moment = Vector3::ZERO;
+        }
+        if let (ModeLaws::BDot(laws), Some(unit)) = (&mode.current, &self.field) {
+            self.moment = laws.moment(&unit.field.rate);
+            self.actuation.release();
+        }
+        if let (ModeLaws::OnEstimates(laws), Some(Some(own))) = (&mut mode.current, layout.laws.get(active)) {
             let mut words = Vec::new();
             for channel in &own.inputs {
                 match (&motion, channel.name.as_str()) {
@@ -267,10 +386,24 @@ impl ModeSystem {
             }
             let decided = laws.call(laws.step_index(), now, &words);
             for channel in &own.outputs {
-                let place = first_word(&layout.outputs, &channel.name);
-                let found = words_of(&own.outputs, &decided, &channel.name);
-                outputs[place..place + found.len()].copy_from_slice(found);
+                place(&channel.name, words_of(&own.outputs, &decided, &channel.name));
             }
+            let command = if laws.commands_changes() { "rate_change" } else { "torque" };
+            let command = words_of(&own.outputs, &decided, command);
+            if mode.drives_wheels && !laws.commands_changes() {
+                torque = vector(&mut WordReader::new(command));
+            }
+            if mode.fires_jets {
+                let command = WordReader::new(command).list(command.len());
+                on_times = self.actuation.on_times(&command, laws.commands_changes());
+            }
+        }
+        if self.actuation.wheels.is_some() {
+            place("wheel_torque", &self.actuation.drive(torque));
+        }
+        place("on_time", &on_times);
+        if self.field.is_some() {
+            place("moment", &vector_words(&self.moment));
         }
         outputs.push(active as u64);
         outputs
@@ -279,31 +412,36 @@ impl ModeSystem {
     /// Returns the words of the outputs of the laws of the present mode, of those of a step; `None` of an open loop.
     pub fn law_outputs(&self, outputs: &[u64]) -> Option<Vec<u64>> {
         let own = &self.layout.laws.get(self.supervisor.active)?.as_ref()?.outputs;
-        let words = |channel: &Channel| words_of(&self.layout.outputs, outputs, &channel.name);
-        Some(own.iter().flat_map(words).copied().collect())
+        Some(own.iter().flat_map(|channel| self.output(outputs, &channel.name)).copied().collect())
+    }
+
+    /// Returns the words of an output of a step.
+    pub fn output<'a>(&self, outputs: &'a [u64], name: &str) -> &'a [u64] {
+        words_of(&self.layout.outputs, outputs, name)
+    }
+
+    /// Returns the laws of the present mode.
+    pub fn active_laws(&self) -> Option<&ModeLaws> {
+        self.modes.get(self.supervisor.active).map(|mode| &mode.start)
     }
 }
 
-/// Returns the laws of a mode or stage; `None` of an open loop.
-fn laws_of_mode(
-    scenario: &Scenario,
-    index: usize,
-    has_modes: bool,
-) -> Result<Option<SampledLaws>, NotExportable> {
+/// Returns the laws of a mode or stage.
+fn laws_of_mode(scenario: &Scenario, index: usize, has_modes: bool) -> Result<ModeLaws, NotExportable> {
     let written = if has_modes {
         scenario.mode.get(index).map(|mode| &mode.law)
     } else {
         scenario.law.stages().get(index).map(|stage| &stage.law)
     };
     match written {
-        None | Some(LawKind::Open(_)) => return Ok(None),
+        None | Some(LawKind::Open(_)) => return Ok(ModeLaws::Open),
         Some(LawKind::Relay(_)) => {
             let reason = "decides at events, and laws of modes in flight code decide at their period: `--mode NAME` exports it alone";
             return Err(NotExportable::new("law.relay", reason));
         }
-        Some(LawKind::BDot(_)) => {
-            let reason = "reads the change of the magnetic field, and laws of modes in flight code read estimates: `--mode NAME` exports it alone";
-            return Err(NotExportable::new("law.b_dot", reason));
+        Some(law @ LawKind::BDot(_)) => {
+            let laws: Vec<&LawKind> = (0..scenario.study.axes.len()).map(|axis| law.about(axis)).collect();
+            return Ok(ModeLaws::BDot(BDotLaws::new(scenario, &laws)?));
         }
         Some(_) => {}
     }
@@ -312,26 +450,26 @@ fn laws_of_mode(
     let alone = alone.map_err(|error| NotExportable::new("law", format!("cannot act alone: {error}")))?;
     let laws: Vec<&LawKind> = (0..alone.study.axes.len()).map(|axis| alone.law.about(axis)).collect();
     let mut laws = SampledLaws::new(&alone, &laws)?;
-    // One filter serves the laws of all modes.
+    // One filter and the same actuators serve the laws of all modes.
     laws.read_estimates();
-    Ok(Some(laws))
+    laws.only_command();
+    Ok(ModeLaws::OnEstimates(Box::new(laws)))
 }
 
-/// Returns the scenario in which a mode or stage acts throughout. A filter that its law does not read goes on unread.
+/// Returns the scenario in which a mode or stage acts throughout, without requirements, which may name other modes. A filter that its
+/// law does not read goes on unread.
 fn alone(
     scenario: &Scenario,
     index: usize,
     has_modes: bool,
     reads_motion: bool,
 ) -> Result<Scenario, ScenarioError> {
-    let mut whole = scenario.clone();
-    if !reads_motion && matches!(scenario.estimator, Some(EstimatorKind::Attitude(_))) {
-        whole = whole.with(|written| {
-            if let Some(EstimatorKind::Attitude(filter)) = &mut written.estimator {
-                filter.watch_only = true;
-            }
-        })?;
-    }
+    let whole = scenario.clone().with(|written| {
+        written.requirement.clear();
+        if let Some(EstimatorKind::Attitude(filter)) = &mut written.estimator {
+            filter.watch_only |= !reads_motion;
+        }
+    })?;
     match scenario.mode.get(index).filter(|_| has_modes) {
         Some(mode) => whole.in_mode(&mode.name),
         None => whole.in_stage(index),

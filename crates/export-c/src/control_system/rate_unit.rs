@@ -29,6 +29,7 @@ impl RateUnit {
             name: "sample",
             about: "Takes a sample of the measured rates.",
             is_start: false,
+            period: None,
             inputs: vec![
                 Channel::flag("is_measured", "True if there is a measurement", 1),
                 Channel::real("rate", "Measured rate about each axis (rad/s)", axes, 1e-3),

@@ -34,6 +34,7 @@ impl Relays {
         let decide = CallLayout {
             name: "decide",
             is_start: false,
+            period: None,
             about: "Decides about an axis at an event; the command holds until a guard on the angle trips, or until its time.",
             inputs: vec![
                 Channel::integer("axis", "Axis, from 0", 1, axes as u64),
@@ -53,6 +54,7 @@ impl Relays {
         let poll = CallLayout {
             name: "poll",
             is_start: false,
+            period: None,
             about: "Polls the guards and the times of all axes at a sample.",
             inputs: vec![Channel::real("angle", "Measured angle about each axis (rad)", axes, 2.0 * zone)],
             outputs: vec![Channel::real("torque", "Torque about each axis (N m)", axes, 1.0)],

@@ -8,17 +8,16 @@ use flexsc_core::numerics::time::Span;
 use flexsc_flight::active_damping::ElasticRateEstimate;
 use flexsc_flight::axis_motion::{AxisMotion, AxisReference, total_angle};
 use flexsc_flight::compensator::CompensatorQuantity;
-use flexsc_flight::jet_pulses::JetPair;
 use flexsc_flight::matrix3::Matrix3;
 use flexsc_flight::phase_plane::PhasePlaneLaw;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::torque_distribution;
 use flexsc_flight::vector3::Vector3;
-use flexsc_flight::wheel_allocation::{allocate, limit_torques};
 
-use super::attitude_unit::{AttitudeUnit, quaternion};
+use super::actuation::Actuation;
+use super::attitude_unit::{AttitudeUnit, quaternion, vector};
 use super::kalman_unit::KalmanUnit;
-use super::laws_of_axes::{LawsOfAxes, WheelDistribution, compensator_commands, jets, laws_of_axes, wheels};
+use super::laws_of_axes::{LawsOfAxes, compensator_commands, laws_of_axes};
 use super::rate_unit::RateUnit;
 use super::{CallLayout, Channel, NotExportable, NumberKind, WordReader};
 
@@ -31,10 +30,8 @@ pub struct SampledLaws {
     pub laws: LawsOfAxes,
     /// Inertia tensor by which commanded accelerations become torques (kg m²).
     pub inertia: Matrix3,
-    /// Wheels that give the torque about three axes, if the actuator consists of them.
-    pub wheels: Option<WheelDistribution>,
-    /// Groups of jets that give the commands about three axes, if the actuator consists of them.
-    pub jets: Option<Vec<JetPair>>,
+    /// Actuators that give the commands.
+    pub actuation: Actuation,
     /// Attitude filter that the laws read; without one the estimates are inputs.
     pub estimator: Option<AttitudeUnit>,
     /// Kalman filters that the laws read; without them and an attitude filter the estimates are inputs.
@@ -58,17 +55,23 @@ impl SampledLaws {
         }
         let inertia = to_matrix3(scenario.study.distribution(scenario).inertia());
         let estimator = AttitudeUnit::new(scenario).filter(|_| laws.len() == 3);
-        let (period, jets) = (cycle.seconds(), jets(scenario, cycle));
-        let (wheels, rate_filter) = (wheels(scenario), RateUnit::new(scenario, laws.len()));
+        let (actuation, rate_filter) = (Actuation::new(scenario), RateUnit::new(scenario, laws.len()));
+        let period = cycle.seconds();
         let mut laws =
-            Self { period, laws: of_axes, inertia, wheels, jets, estimator, filter: None, rate_filter };
+            Self { period, laws: of_axes, inertia, actuation, estimator, filter: None, rate_filter };
         laws.filter = KalmanUnit::new(scenario, laws.reads_mode());
         Ok(laws)
     }
 
-    /// Removes the estimator and the on-times of jets: the laws read estimates, and only command.
+    /// Removes the estimator, the on-times of jets and the unloading of wheels: the laws read estimates, and only command.
     pub(super) fn read_estimates(&mut self) {
-        (self.estimator, self.filter, self.rate_filter, self.jets) = (None, None, None, None);
+        (self.estimator, self.filter, self.rate_filter) = (None, None, None);
+        self.actuation.keep_wheels();
+    }
+
+    /// Removes the actuators, which serve the laws of all modes.
+    pub(super) fn only_command(&mut self) {
+        self.actuation = Actuation::default();
     }
 
     /// Returns the number of axes.
@@ -120,18 +123,27 @@ impl SampledLaws {
         let estimator = self.estimator.iter().flat_map(AttitudeUnit::calls);
         let filter = self.filter.iter().flat_map(KalmanUnit::calls);
         let rates = self.rate_filter.iter().map(RateUnit::layout);
-        estimator.chain(filter).chain(rates).chain([self.layout()]).collect()
+        let unload = self.actuation.unload_layout();
+        estimator.chain(filter).chain(rates).chain(unload).chain([self.layout()]).collect()
     }
 
-    /// Returns the index of the step among the functions.
-    pub fn step_index(&self) -> usize {
+    /// Returns the number of functions of estimators, which come first.
+    pub fn estimator_calls(&self) -> usize {
         let filter = self.filter.as_ref().map_or(0, KalmanUnit::call_count);
         if self.estimator.is_some() { 2 } else { filter + usize::from(self.rate_filter.is_some()) }
     }
 
+    /// Returns the index of the step, which is the last of the functions.
+    pub fn step_index(&self) -> usize {
+        self.estimator_calls() + usize::from(self.actuation.unloading.is_some())
+    }
+
     /// Calls the function with this index, and returns the words of its outputs.
     pub(super) fn call(&mut self, call: usize, now: Ticks, inputs: &[u64]) -> Vec<u64> {
-        let step = self.step_index();
+        let (estimators, step) = (self.estimator_calls(), self.step_index());
+        if (estimators..step).contains(&call) {
+            return self.actuation.unload(inputs, None);
+        }
         if let Some(filter) = self.filter.as_mut().filter(|_| call < step) {
             return filter.call(call, inputs);
         }
@@ -193,16 +205,9 @@ impl SampledLaws {
         if !matches!(self.laws, LawsOfAxes::PhasePlane(..)) {
             outputs.push(Channel::from_quantity(FlightQuantity::Torque, axes, 1.0));
         }
-        if let Some(wheels) = &self.wheels {
-            let about = "Torque of the motor of each wheel on its rotor (N m)";
-            outputs.push(Channel::real("wheel_torque", about, wheels.wheels.len(), 1.0).within(wheels.limit));
-        }
-        if self.jets.is_some() {
-            let about = "Time for which the jets about each axis fire (s), negative for those of the negative direction";
-            outputs.push(Channel::real("on_time", about, axes, 1.0).within(self.period));
-        }
+        outputs.extend(self.actuation.channels());
         let about = "Decides on the commands of a period.";
-        CallLayout { name: "step", about, is_start: false, inputs, outputs }
+        CallLayout { inputs, outputs, ..CallLayout::new("step", about) }
     }
 
     /// Reads the estimated motion about each axis from the estimator or from the inputs.
@@ -269,8 +274,7 @@ impl SampledLaws {
         let mut stored = Vector3::ZERO;
         if self.is_acceleration() {
             set(words.list(axes), |reference| &mut reference.acceleration);
-            let [x, y, z] = words.reals();
-            stored = Vector3 { x, y, z };
+            stored = vector(&mut words);
         }
         let speeds = words.list(self.speed_count());
         let commands: Vec<f64> = match &mut self.laws {
@@ -312,20 +316,16 @@ impl SampledLaws {
             torque = [of_axes.x, of_axes.y, of_axes.z][..axes].to_vec();
             outputs.extend_from_slice(&torque);
         }
-        if let (Some(own), [x, y, z]) = (&mut self.wheels, &torque[..]) {
-            let demanded = Vector3::ZERO.minus(&Vector3 { x: *x, y: *y, z: *z });
-            allocate(&mut own.wheels, &demanded, own.is_least_largest);
-            limit_torques(&mut own.wheels, own.limit);
-            outputs.extend(own.wheels.iter().map(|wheel| wheel.torque));
+        let mut outputs: Vec<u64> = outputs.into_iter().map(f64::to_bits).collect();
+        if let [x, y, z] = torque[..] {
+            outputs.extend(self.actuation.drive(Vector3 { x, y, z }));
         }
-        let is_change = matches!(self.laws, LawsOfAxes::PhasePlane(..));
-        for (pair, demand) in self.jets.iter().flatten().zip(&torque) {
-            outputs.push(if is_change {
-                pair.on_time_of_change(*demand)
-            } else {
-                pair.on_time_of_torque(*demand)
-            });
-        }
-        outputs.into_iter().map(f64::to_bits).collect()
+        outputs.extend(self.actuation.on_times(&torque, self.commands_changes()));
+        outputs
+    }
+
+    /// Returns true if the laws command changes of the rate by pulses.
+    pub fn commands_changes(&self) -> bool {
+        matches!(self.laws, LawsOfAxes::PhasePlane(..))
     }
 }

@@ -6,7 +6,10 @@ use flexsc_flight::gain_schedule::SchedulePoint;
 
 use super::initialiser::initialiser;
 use super::signature::{about, signature};
-use super::{Plan, b_dot_calls, compensator_calls, estimator_calls, kalman_calls, rate_calls};
+use super::{
+    Plan, actuation_calls, b_dot_calls, compensator_calls, estimator_calls, kalman_calls, parameters,
+    rate_calls,
+};
 use crate::control_system::{ControlSystem, LawsOfAxes, Relays, SampledLaws};
 
 /// Names of the axes of a body with three.
@@ -74,16 +77,25 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     if let Some(unit) = &laws.filter {
         kalman_calls::start(plan, unit, text);
     }
-    let _ = writeln!(text, "void {prefix}_init({prefix}_state *state)\n{{");
+    let has_parameters = parameters::has_law_parameters(laws);
+    let given = if has_parameters && plan.mode.is_some() {
+        format!(", const {prefix}_parameters *parameters")
+    } else {
+        String::new()
+    };
+    let _ = writeln!(text, "void {prefix}_init({prefix}_state *state{given})\n{{");
+    let is_zeroed = laws.estimator.is_some() || matches!(laws.laws, LawsOfAxes::StateSpace(_));
+    if is_zeroed {
+        text.push_str("    memset(state, 0, sizeof *state);\n");
+    }
+    parameters::init(plan, has_parameters || laws.actuation.unloading.is_some(), text);
     if laws.estimator.is_some() {
         let identity = format!("({prefix}_quaternion){{ .w = 1.0, .x = 0.0, .y = 0.0, .z = 0.0 }}");
         let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
         let _ = writeln!(
             text,
-            "    memset(state, 0, sizeof *state);\n    start_filter(state, ({prefix}_ticks){{ .whole = 0, .part = 0 }}, {identity}, {zero});"
+            "    start_filter(state, ({prefix}_ticks){{ .whole = 0, .part = 0 }}, {identity}, {zero});"
         );
-    } else if let LawsOfAxes::StateSpace(_) = &laws.laws {
-        text.push_str("    memset(state, 0, sizeof *state);\n");
     }
     if let Some(unit) = &laws.filter {
         kalman_calls::init(unit, text);
@@ -95,10 +107,14 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
         let member = about("law", axis, axes);
         match &laws.laws {
             LawsOfAxes::StateSpace(_) => {}
-            LawsOfAxes::Pd(own) => set(member, "pd_law", initialiser(&own[axis].0, prefix)),
+            LawsOfAxes::Pd(own) => {
+                let value = initialiser(&own[axis].0, prefix);
+                set(member, "pd_law", parameters::tuned(plan, laws, axis, value));
+            }
             LawsOfAxes::PhasePlane(own, _) => set(member, "phase_plane_law", initialiser(&own[axis], prefix)),
             LawsOfAxes::Attitude(own) => {
-                set(member, "attitude_feedback", initialiser(&own[axis].0, prefix));
+                let value = initialiser(&own[axis].0, prefix);
+                set(member, "attitude_feedback", parameters::tuned(plan, laws, axis, value));
                 for (index, filter) in own[axis].1.iter().enumerate() {
                     set(format!("filters[{axis}][{index}]"), "biquad_filter", initialiser(filter, prefix));
                 }
@@ -108,9 +124,7 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     for (axis, filter) in laws.rate_filter.iter().flat_map(|unit| &unit.axes).enumerate() {
         set(about("rate_filter", axis, axes), "rigid_rate_filter", initialiser(filter, prefix));
     }
-    for (index, wheel) in laws.wheels.iter().flat_map(|wheels| &wheels.wheels).enumerate() {
-        set(format!("wheels[{index}]"), "allocated_wheel", initialiser(wheel, prefix));
-    }
+    actuation_calls::init(plan, &laws.actuation, text);
     text.push_str("}\n\n");
     if let Some(unit) = &laws.estimator {
         estimator_calls::functions(plan, unit, text);
@@ -121,6 +135,7 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     if let Some(unit) = &laws.rate_filter {
         rate_calls::sample(plan, unit, text);
     }
+    actuation_calls::unload(plan, &laws.actuation, None, false, text);
     let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[laws.step_index()]));
     if let Some(unit) = &laws.estimator {
         let _ = writeln!(
@@ -147,8 +162,11 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     if laws.is_acceleration() {
         torque(plan, laws, text);
     }
-    wheels(plan, laws, text);
-    jets(laws, text);
+    actuation_calls::wheels(plan, &laws.actuation, |axis| format!("output->torque[{axis}]"), text);
+    if laws.actuation.jets.is_some() {
+        text.push_str("\n    /* pulses of the jets */\n");
+        actuation_calls::jets(&laws.actuation, laws.commands_changes(), "    ", "output->", text);
+    }
     text.push_str("}\n");
 }
 
@@ -199,16 +217,7 @@ fn constants(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
             );
         }
     }
-    if let Some(pairs) = &laws.jets {
-        let rows: Vec<String> =
-            pairs.iter().map(|pair| format!("    {}", initialiser(pair, prefix))).collect();
-        let _ = writeln!(
-            text,
-            "/* Groups of jets about the axes. */\nstatic const {prefix}_jet_pair jets[{}] = {{\n{}\n}};\n",
-            rows.len(),
-            rows.join(",\n")
-        );
-    }
+    actuation_calls::constants(plan, &laws.actuation, text);
     if let LawsOfAxes::StateSpace(own) = &laws.laws {
         compensator_calls::constants(plan, own, text);
     }
@@ -328,37 +337,5 @@ fn torque(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     );
     for (axis, component) in ["x", "y", "z"].into_iter().enumerate().take(axes) {
         let _ = writeln!(text, "    output->{} = torque.{component};", about("torque", axis, axes));
-    }
-}
-
-/// Writes the allocation of the torque to the wheels.
-fn wheels(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
-    let (prefix, Some(own)) = (plan.prefix, &laws.wheels) else { return };
-    let count = own.wheels.len();
-    let limit = super::initialiser::initialiser(&own.limit, prefix);
-    let _ = writeln!(
-        text,
-        "\n    /* torques of the wheels, which turn the body the other way */\n    const {prefix}_vector3 demanded = \
-         ({prefix}_vector3){{ .x = 0.0 - output->torque[0], .y = 0.0 - output->torque[1], .z = 0.0 - output->torque[2] }};\n    \
-         wheel_allocation_allocate(state->wheels, {count}, &demanded, {});\n    \
-         wheel_allocation_limit_torques(state->wheels, {count}, {limit});\n    \
-         for (size_t wheel = 0; wheel < {count}; ++wheel) {{\n        output->wheel_torque[wheel] = state->wheels[wheel].torque;\n    }}",
-        own.is_least_largest
-    );
-}
-
-/// Writes the on-times of jets.
-fn jets(laws: &SampledLaws, text: &mut String) {
-    let Some(pairs) = &laws.jets else { return };
-    let (function, demand) = match &laws.laws {
-        LawsOfAxes::PhasePlane(..) => ("change", "rate_change"),
-        _ => ("torque", "torque"),
-    };
-    text.push_str("\n    /* pulses of the jets */\n");
-    for axis in 0..pairs.len() {
-        let _ = writeln!(
-            text,
-            "    output->on_time[{axis}] = jet_pair_on_time_of_{function}(&jets[{axis}], output->{demand}[{axis}]);"
-        );
     }
 }

@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use flexsc_core::record::AttitudeEstimate;
 use flexsc_flight::attitude_observation::ObservationKind;
 
-use super::Plan;
 use super::initialiser::initialiser;
 use super::signature::signature;
+use super::{Plan, parameters};
 use crate::control_system::AttitudeUnit;
 
 /// Returns the members of the state that the filter needs.
@@ -27,7 +27,11 @@ pub fn members(unit: &AttitudeUnit) -> [(&'static str, &'static str, String); 3]
 pub fn start(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
     let prefix = plan.prefix;
     let (noise, reach) = (initialiser(&unit.noise, prefix), initialiser(&unit.reach, prefix));
-    let gate = initialiser(&unit.gate, prefix);
+    let gate = ["nis", "rate"].into_iter().fold(initialiser(&unit.gate, prefix), |text, name| {
+        let value = if name == "nis" { unit.gate.most_nis } else { unit.gate.most_rate };
+        let value = parameters::expression(plan, &format!("gate_{name}"), value);
+        parameters::replaced(&text, &format!("most_{name}"), &value)
+    });
     let [angle, bias] = unit.deviations.map(|deviation| initialiser(&deviation, prefix));
     let _ = writeln!(
         text,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Plan, compensator_calls, estimator_calls, kalman_calls};
+use super::{Plan, actuation_calls, compensator_calls, estimator_calls, kalman_calls, parameters};
 use crate::control_system::{Channel, ControlSystem, LawsOfAxes, NumberKind};
 use crate::translate::Translation;
 
@@ -23,6 +23,7 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
     text.push_str("\n\n");
     text.push_str(translation.declarations.trim());
     text.push_str("\n\n");
+    text.push_str(&parameters::definition(plan));
     text.push_str(state);
     for call in plan.calls {
         let _ = writeln!(text, "/* Inputs of `{prefix}_{}`. */", call.name);
@@ -40,6 +41,7 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
         "/* Sets the state before the first call. */\n{};\n",
         super::signature::init_signature(plan)
     );
+    text.push_str(&parameters::declarations(plan));
     for call in plan.calls {
         let _ = writeln!(text, "/* {} */\n{};\n", call.about, super::signature::signature(plan, call));
     }
@@ -62,13 +64,22 @@ fn trace(plan: &Plan<'_>) -> String {
     )
 }
 
-/// Returns the lines of a comment that list the parts of the control loop that are not in the code.
+/// Returns the lines of a comment that list the parts of the control loop that are not in the code, and its inputs from elsewhere.
 fn excluded_parts(plan: &Plan<'_>) -> String {
-    if plan.excluded_parts.is_empty() {
-        return " *\n * Every part of the scenario's control loop is in this code.".to_owned();
+    let list = |is_supplied: bool| -> String {
+        let parts = plan.excluded_parts.iter().filter(|part| part.is_supplied == is_supplied);
+        parts.fold(String::new(), |all, part| all + &format!("\n *   {}: {}", part.key, part.duty))
+    };
+    let (left_out, supplied) = (list(false), list(true));
+    let mut text = if left_out.is_empty() {
+        " *\n * Every part of the scenario's control loop is in this code.".to_owned()
+    } else {
+        format!(" *\n * Not part of this code; the caller must:{left_out}")
+    };
+    if !supplied.is_empty() {
+        let _ = write!(text, "\n * Inputs from guidance and ephemerides; the caller must:{supplied}");
     }
-    let parts = plan.excluded_parts.iter().map(|part| format!("\n *   {}: {}", part.key, part.duty));
-    format!(" *\n * Not part of this code; the caller must:{}", parts.collect::<String>())
+    text
 }
 
 /// Returns the C struct that holds the state of the control system between its calls.
@@ -119,9 +130,7 @@ pub fn state(plan: &Plan<'_>) -> String {
                     &format!("rate_filter{axes}"),
                 );
             }
-            if let Some(own) = &laws.wheels {
-                member("Reaction wheels.", "AllocatedWheel", &format!("wheels[{}]", own.wheels.len()));
-            }
+            actuation_calls::members(plan, &laws.actuation, &mut text);
             if let Some(unit) = &laws.filter {
                 kalman_calls::members(plan, unit, &mut text);
             }
@@ -130,8 +139,20 @@ pub fn state(plan: &Plan<'_>) -> String {
             }
         }
     }
+    member_of_parameters(plan, &mut text);
     let _ = writeln!(text, "}} {}_state;\n", plan.prefix);
     text
+}
+
+/// Writes the member of the state with the parameters.
+pub fn member_of_parameters(plan: &Plan<'_>, text: &mut String) {
+    if !plan.parameters.is_empty() && plan.mode.is_none() {
+        let _ = writeln!(
+            text,
+            "    /* Numbers that are tuned in flight. */\n    {}_parameters parameters;",
+            plan.prefix
+        );
+    }
 }
 
 /// Writes a struct with a member for each channel.

@@ -21,8 +21,11 @@ pub fn interface(plan: &Plan<'_>, scenario: &Scenario) -> String {
         std::iter::once(gyro).chain(others).map(row).collect()
     });
     let order: Vec<String> = main_loop::order(plan).map(|call| format!("{prefix}_{}", call.name)).collect();
-    let excluded_parts: Vec<Value> =
-        plan.excluded_parts.iter().map(|part| json!({ "key": part.key, "caller": part.duty })).collect();
+    let excluded_parts: Vec<Value> = plan
+        .excluded_parts
+        .iter()
+        .map(|part| json!({ "key": part.key, "caller": part.duty, "is_input": part.is_supplied }))
+        .collect();
     let functions: Vec<Value> = plan.calls.iter().map(|call| function(plan, call)).collect();
     let written = json!({
         "name": prefix,
@@ -52,6 +55,7 @@ fn function(plan: &Plan<'_>, call: &CallLayout) -> Value {
         "function": format!("{}_{}", plan.prefix, call.name),
         "about": call.about,
         "called": if call.is_start { "once" } else { "repeatedly" },
+        "period_s": call.period,
         "inputs": list(&call.inputs),
         "outputs": list(&call.outputs),
     })

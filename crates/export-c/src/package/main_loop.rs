@@ -57,7 +57,14 @@ pub fn main_loop(plan: &Plan<'_>) -> String {
     }
     text.push_str("    for (int64_t cycle = 1; cycle <= 100; ++cycle) {\n");
     for call in order(plan).filter(|call| !call.is_start) {
-        one(plan, call, "time_of(cycle)", "        ", &mut text);
+        let cycles = call.period.map_or(1, |period| (period * 1000.0 / milliseconds as f64).round() as u64);
+        if cycles > 1 {
+            let _ = writeln!(text, "        if (cycle % {cycles} == 0) {{");
+            one(plan, call, "time_of(cycle)", "            ", &mut text);
+            text.push_str("        }\n");
+        } else {
+            one(plan, call, "time_of(cycle)", "        ", &mut text);
+        }
     }
     text.push_str("    }\n    printf(\"100 cycles\\n\");\n    return 0;\n}\n");
     text

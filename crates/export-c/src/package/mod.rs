@@ -1,5 +1,6 @@
 //! Files of an exported control system: header, source, driver, start-up code of boards, Makefile, vectors and a description.
 
+mod actuation_calls;
 mod b_dot_calls;
 mod calls;
 mod compensator_calls;
@@ -12,6 +13,7 @@ mod interface;
 mod kalman_calls;
 mod main_loop;
 mod modes;
+mod parameters;
 mod rate_calls;
 mod signature;
 mod source;
@@ -94,6 +96,10 @@ struct Plan<'a> {
     calls: &'a [CallLayout],
     /// Parts of the control loop that are not in the code.
     excluded_parts: &'a [ExcludedPart],
+    /// Numbers that are tuned in flight.
+    parameters: &'a [parameters::FlightParameter],
+    /// Name of the mode whose laws are written; `None` of the whole control system.
+    mode: Option<&'a str>,
 }
 
 impl Plan<'_> {
@@ -127,6 +133,7 @@ pub fn export(
     let effective = scenario.to_toml();
     let digest =
         Sha256::digest(&effective).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
+    let tuned = parameters::parameters(&system);
     let plan = Plan {
         prefix,
         origin,
@@ -134,6 +141,8 @@ pub fn export(
         system: &system,
         calls: &calls,
         excluded_parts: &excluded_parts,
+        parameters: &tuned,
+        mode: None,
     };
     let (functions, state) = match &system {
         ControlSystem::Modes(own) => (modes::functions(&plan, own), modes::state(&plan, own)),
@@ -157,6 +166,7 @@ pub fn export(
         text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len())),
         PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(&vectors) },
     ]);
+    files.extend(parameters::source(&plan).map(|source| text(format!("{prefix}_parameters.c"), source)));
     files
         .extend(static_files::board_files().map(|(path, content)| text(path.to_owned(), content.to_owned())));
     files.sort_by(|a, b| a.path.cmp(&b.path));

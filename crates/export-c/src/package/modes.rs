@@ -8,8 +8,8 @@ use flexsc_core::control::operation::{ModeFormula, ModeQuantity};
 
 use super::initialiser::initialiser;
 use super::signature::{has_time, init_signature, signature};
-use super::{Plan, calls, estimator_calls, header};
-use crate::control_system::{CallLayout, Channel, ControlSystem, ModeSystem, ReadingFormula};
+use super::{Plan, actuation_calls, b_dot_calls, calls, estimator_calls, header, parameters};
+use crate::control_system::{CallLayout, Channel, ControlSystem, ModeSystem, ReadingFormula, SampledLaws};
 
 /// Laws of one mode as a control system of their own.
 struct ModePart {
@@ -21,17 +21,17 @@ struct ModePart {
     layout: CallLayout,
 }
 
-/// Returns the laws of all modes but open loops.
+/// Returns the laws of all modes that read estimates.
 fn mode_parts(modes: &ModeSystem) -> Vec<ModePart> {
     let each = modes.modes.iter().enumerate().filter_map(|(index, mode)| {
-        let laws = mode.start.clone()?;
+        let laws = mode.start.on_estimates()?.clone();
         let (name, layout) = (mode.name.clone(), laws.layout());
         Some(ModePart { index, name, system: ControlSystem::Sampled(Box::new(laws)), layout })
     });
     each.collect()
 }
 
-/// Returns the control systems of the laws of all modes but open loops.
+/// Returns the control systems of the laws of all modes that read estimates.
 pub fn systems(modes: &ModeSystem) -> Vec<ControlSystem> {
     mode_parts(modes).into_iter().map(|part| part.system).collect()
 }
@@ -41,7 +41,12 @@ pub fn state(plan: &Plan<'_>, modes: &ModeSystem) -> String {
     let (prefix, mut text) = (plan.prefix, String::new());
     let parts = mode_parts(modes);
     for part in &parts {
-        let own = Plan { system: &part.system, calls: std::slice::from_ref(&part.layout), ..*plan };
+        let own = Plan {
+            system: &part.system,
+            calls: std::slice::from_ref(&part.layout),
+            mode: Some(&part.name),
+            ..*plan
+        };
         let written = header::state(&own);
         let head = "/* State of the control system, which its functions change. */";
         let written = written.replace(head, &format!("/* Laws of the mode `{}`. */", part.name));
@@ -60,14 +65,27 @@ pub fn state(plan: &Plan<'_>, modes: &ModeSystem) -> String {
     if !modes.tables.exits.is_empty() {
         member("Ends of the modes.", "SupervisedExit", &format!("exits[{}]", modes.tables.exits.len()));
     }
+    if !parameters::thresholds(modes).is_empty() {
+        member(
+            "Comparisons of their conditions.",
+            "ConditionStep",
+            &format!("steps[{}]", modes.tables.steps.len()),
+        );
+    }
     for (about, name, declared) in modes.estimator.iter().flat_map(estimator_calls::members) {
         member(about, name, &declared);
     }
-    if modes.estimator.is_some() {
+    if modes.field.is_some() {
+        member("Rate of change of the magnetic field.", "FieldRate", "field");
+        member("Moment of the magnetorquers (A m^2).", "Vector3", "moment");
+    }
+    if modes.moves_angles {
         member("Angle from the target of the mode before, at a change.", "Vector3", "moved_angle");
         member("Target of the mode before.", "Quaternion", "moved_from");
         text.push_str("    /* True from a change on to the next step. */\n    bool has_moved;\n");
     }
+    actuation_calls::members(plan, &modes.actuation, &mut text);
+    header::member_of_parameters(plan, &mut text);
     for ModePart { name, .. } in &parts {
         let _ =
             writeln!(text, "    /* Laws of the mode `{name}`. */\n    {prefix}_law_{name}_state law_{name};");
@@ -80,7 +98,12 @@ pub fn state(plan: &Plan<'_>, modes: &ModeSystem) -> String {
 pub fn functions(plan: &Plan<'_>, modes: &ModeSystem) -> String {
     let (parts, mut text) = (mode_parts(modes), String::new());
     for part in &parts {
-        let own = Plan { system: &part.system, calls: std::slice::from_ref(&part.layout), ..*plan };
+        let own = Plan {
+            system: &part.system,
+            calls: std::slice::from_ref(&part.layout),
+            mode: Some(&part.name),
+            ..*plan
+        };
         let written = calls::functions(&own);
         let static_ones: Vec<String> = written
             .lines()
@@ -91,6 +114,7 @@ pub fn functions(plan: &Plan<'_>, modes: &ModeSystem) -> String {
         text.push_str("\n\n");
     }
     lists(plan, modes, &mut text);
+    actuation_calls::constants(plan, &modes.actuation, &mut text);
     if let Some(unit) = &modes.estimator {
         estimator_calls::start(plan, unit, &mut text);
     }
@@ -98,8 +122,15 @@ pub fn functions(plan: &Plan<'_>, modes: &ModeSystem) -> String {
     if let Some(unit) = &modes.estimator {
         estimator_calls::functions(plan, unit, &mut text);
     }
+    b_dot_calls::sample(plan, &mut text);
     enter(plan, modes, &mut text);
     supervise(plan, modes, &mut text);
+    let detumbling = modes.modes.iter().enumerate().filter(|(_, mode)| mode.start.b_dot().is_some());
+    let detumbling: Vec<String> =
+        detumbling.map(|(mode, _)| format!("state->supervisor.active == {mode}")).collect();
+    let held = detumbling.join(" || ");
+    let held = Some(held.as_str()).filter(|held| !held.is_empty());
+    actuation_calls::unload(plan, &modes.actuation, held, held.is_some(), &mut text);
     step(plan, modes, &parts, &mut text);
     text
 }
@@ -132,6 +163,19 @@ fn list_argument(name: &str, count: usize) -> String {
     if count == 0 { "NULL, 0".to_owned() } else { format!("{name}, {count}") }
 }
 
+/// Returns the list of comparisons: that of the state if their limits are parameters.
+fn step_list(modes: &ModeSystem) -> &'static str {
+    if parameters::thresholds(modes).is_empty() { "step_list" } else { "state->steps" }
+}
+
+/// Returns the further argument with which the laws of a mode start: their parameters, if they have any.
+fn law_argument(part: &ModePart) -> &'static str {
+    match &part.system {
+        ControlSystem::Sampled(laws) if parameters::has_law_parameters(laws) => ", &state->parameters",
+        _ => "",
+    }
+}
+
 /// Returns the modes and the ends as arguments.
 fn mode_arguments(modes: &ModeSystem) -> String {
     let exits = list_argument("state->exits", modes.tables.exits.len());
@@ -142,6 +186,7 @@ fn mode_arguments(modes: &ModeSystem) -> String {
 fn init(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut String) {
     let prefix = plan.prefix;
     let _ = writeln!(text, "{}\n{{\n    memset(state, 0, sizeof *state);", init_signature(plan));
+    parameters::init(plan, modes.actuation.unloading.is_some(), text);
     if modes.estimator.is_some() {
         let identity = format!("({prefix}_quaternion){{ .w = 1.0, .x = 0.0, .y = 0.0, .z = 0.0 }}");
         let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
@@ -151,9 +196,18 @@ fn init(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
     if !modes.tables.exits.is_empty() {
         text.push_str("    memcpy(state->exits, exit_list, sizeof state->exits);\n");
     }
+    let thresholds = parameters::thresholds(modes);
+    if !thresholds.is_empty() {
+        text.push_str("    memcpy(state->steps, step_list, sizeof state->steps);\n");
+    }
+    for (step, name) in thresholds {
+        let _ = writeln!(text, "    state->steps[{step}].limit = state->parameters.{name};");
+    }
     let _ = writeln!(text, "    state->supervisor = mode_supervisor_start(now, {});", mode_arguments(modes));
-    for ModePart { name, .. } in parts {
-        let _ = writeln!(text, "    {prefix}_law_{name}_init(&state->law_{name});");
+    actuation_calls::init(plan, &modes.actuation, text);
+    for part in parts {
+        let (name, argument) = (&part.name, law_argument(part));
+        let _ = writeln!(text, "    {prefix}_law_{name}_init(&state->law_{name}{argument});");
     }
     text.push_str("}\n\n");
     let _ = writeln!(
@@ -161,10 +215,11 @@ fn init(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
         "/* Starts the laws of the present mode without a past. */\nstatic void start_laws({prefix}_state *state)\n{{\n    \
          switch (state->supervisor.active) {{"
     );
-    for ModePart { index, name, .. } in parts {
+    for part in parts {
+        let (index, name, argument) = (part.index, &part.name, law_argument(part));
         let _ = writeln!(
             text,
-            "    case {index}:\n        {prefix}_law_{name}_init(&state->law_{name});\n        break;"
+            "    case {index}:\n        {prefix}_law_{name}_init(&state->law_{name}{argument});\n        break;"
         );
     }
     text.push_str("    default:\n        break;\n    }\n}\n\n");
@@ -179,7 +234,7 @@ fn enter(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
          mode_supervisor_enter(&state->supervisor, now, mode, {});\n    start_laws(state);\n{}    output->mode = (int64_t)mode;\n}}\n",
         signature(plan, &plan.calls[modes.call_index("enter")]),
         mode_arguments(modes),
-        if modes.estimator.is_some() { "    state->has_moved = false;\n" } else { "" },
+        if modes.moves_angles { "    state->has_moved = false;\n" } else { "" },
     );
 }
 
@@ -206,7 +261,7 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
             _ => false,
         })
     };
-    if let Some(entries) = entries {
+    if let Some(entries) = entries.filter(|_| modes.moves_angles) {
         let _ = writeln!(
             text,
             "    const {prefix}_quaternion target = {{ .w = input->target_attitude[0], .x = input->target_attitude[1], .y = input->target_attitude[2], .z = input->target_attitude[3] }};\n    \
@@ -260,7 +315,7 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
         let _ = writeln!(text, "    readings[{index}] = {value};");
     }
     let arguments = mode_arguments(modes);
-    let moved = if modes.estimator.is_some() {
+    let moved = if modes.moves_angles {
         "        state->moved_angle = rotation;\n        state->moved_from = target;\n        state->has_moved = true;\n"
     } else {
         ""
@@ -276,7 +331,7 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
          output->next_whole = due.time.whole;\n    output->next_part = due.time.part;\n    \
          output->period_whole = period.whole;\n    output->period_part = period.part;\n}}\n",
         list_argument("readings", formulas.len()),
-        list_argument("step_list", modes.tables.steps.len()),
+        list_argument(step_list(modes), modes.tables.steps.len()),
     );
 }
 
@@ -286,15 +341,21 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
     let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[modes.call_index("step")]));
     let filter = modes.estimator.as_ref();
     if let Some(unit) = filter {
+        let moved = if modes.moves_angles {
+            format!(
+                "    if (state->has_moved) {{\n        /* at a change the angles move from one target to the other */\n        \
+                 const {prefix}_vector3 shift = quaternion_rotation_to(&target, &state->moved_from);\n        \
+                 angle.x = state->moved_angle.x + shift.x;\n        angle.y = state->moved_angle.y + shift.y;\n        \
+                 angle.z = state->moved_angle.z + shift.z;\n        state->has_moved = false;\n    }}\n"
+            )
+        } else {
+            String::new()
+        };
         let _ = writeln!(
             text,
             "    const {prefix}_quaternion target = {{ .w = input->target_attitude[0], .x = input->target_attitude[1], .y = input->target_attitude[2], .z = input->target_attitude[3] }};\n    \
              const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n    \
-             {prefix}_vector3 angle = quaternion_rotation_to(&target, &attitude);\n    \
-             if (state->has_moved) {{\n        /* at a change the angles move from one target to the other */\n        \
-             const {prefix}_vector3 shift = quaternion_rotation_to(&target, &state->moved_from);\n        \
-             angle.x = state->moved_angle.x + shift.x;\n        angle.y = state->moved_angle.y + shift.y;\n        \
-             angle.z = state->moved_angle.z + shift.z;\n        state->has_moved = false;\n    }}\n    \
+             {prefix}_vector3 angle = quaternion_rotation_to(&target, &attitude);\n{moved}    \
              const {prefix}_vector3 rate = attitude_estimator_rate(&state->estimator, state->entries, {entries});",
             entries = unit.entries.len()
         );
@@ -306,7 +367,15 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
     if parts.is_empty() {
         text.push_str("    (void)input;\n");
     }
-    text.push_str("    memset(output, 0, sizeof *output);\n    switch (state->supervisor.active) {\n");
+    text.push_str("    memset(output, 0, sizeof *output);\n");
+    if modes.actuation.wheels.is_some() {
+        let _ = writeln!(text, "    {prefix}_vector3 torque = {{ .x = 0.0, .y = 0.0, .z = 0.0 }};");
+    }
+    if modes.field.is_some() && modes.clears_moment {
+        let _ = writeln!(text, "    state->moment = ({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }};");
+    }
+    text.push_str("    switch (state->supervisor.active) {\n");
+    b_dot_cases(plan, modes, text);
     for part in parts {
         let name = &part.name;
         let _ = writeln!(
@@ -340,11 +409,46 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
                 writeln!(text, "        memcpy(output->{output}, decided.{output}, sizeof decided.{output});")
             };
         }
+        let mode = &modes.modes[part.index];
+        let is_change = mode.start.on_estimates().is_some_and(SampledLaws::commands_changes);
+        if mode.drives_wheels && modes.actuation.wheels.is_some() {
+            for (axis, component) in ["x", "y", "z"].into_iter().enumerate() {
+                let _ = writeln!(text, "        torque.{component} = decided.torque[{axis}];");
+            }
+        }
+        if mode.fires_jets {
+            actuation_calls::jets(&modes.actuation, is_change, "        ", "decided.", text);
+        }
         text.push_str("        break;\n    }\n");
     }
-    text.push_str(
-        "    default:\n        break;\n    }\n    output->mode = (int64_t)state->supervisor.active;\n}\n",
-    );
+    text.push_str("    default:\n        break;\n    }\n");
+    let components = ["torque.x", "torque.y", "torque.z"];
+    actuation_calls::wheels(plan, &modes.actuation, |axis| components[axis].to_owned(), text);
+    if modes.field.is_some() {
+        actuation_calls::moment_output("state->moment", text);
+    }
+    text.push_str("    output->mode = (int64_t)state->supervisor.active;\n}\n");
+}
+
+/// Writes the decisions of B-dot laws, which end the unloading.
+fn b_dot_cases(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
+    let prefix = plan.prefix;
+    for (index, laws) in
+        modes.modes.iter().enumerate().filter_map(|(index, mode)| Some((index, mode.start.b_dot()?)))
+    {
+        let _ = writeln!(text, "    case {index}:");
+        for (axis, component) in ["x", "y", "z"].into_iter().enumerate() {
+            let moment = b_dot_calls::moment(plan, laws, Some(&modes.modes[index].name), axis);
+            let _ = writeln!(text, "        state->moment.{component} = {moment};");
+        }
+        if modes.actuation.unloading.is_some() {
+            let _ = writeln!(
+                text,
+                "        state->unloading.is_active = false;\n        state->counter = ({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }};"
+            );
+        }
+        text.push_str("        break;\n");
+    }
 }
 
 /// Returns text in which the names of a control system's own are those of the laws of a mode.

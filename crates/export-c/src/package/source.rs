@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::{Plan, b_dot_calls, compensator_calls, kalman_calls, rate_calls};
-use crate::control_system::{ControlSystem, LawsOfAxes};
+use super::{Plan, actuation_calls, b_dot_calls, compensator_calls, kalman_calls, parameters, rate_calls};
+use crate::control_system::{ControlSystem, LawsOfAxes, LawsOfMode};
 use crate::translate::Translation;
 
 /// Functions of an attitude filter.
@@ -49,6 +49,13 @@ pub fn roots(system: &ControlSystem, functions: &str) -> Vec<&'static str> {
             if modes.estimator.is_some() {
                 roots.extend(ESTIMATOR);
             }
+            let are_changes = |mode: &LawsOfMode| Some(mode.start.on_estimates()?.commands_changes());
+            let are_changes: Vec<bool> =
+                modes.modes.iter().filter(|mode| mode.fires_jets).filter_map(are_changes).collect();
+            roots.extend(actuation_calls::roots(&modes.actuation, &are_changes));
+            if modes.field.is_some() {
+                roots.extend(b_dot_calls::ROOTS);
+            }
             for laws in super::modes::systems(modes) {
                 roots.extend(self::roots(&laws, ""));
             }
@@ -81,17 +88,7 @@ pub fn roots(system: &ControlSystem, functions: &str) -> Vec<&'static str> {
             if laws.rate_filter.is_some() {
                 roots.push(rate_calls::ROOT);
             }
-            if laws.jets.is_some() {
-                let is_change = matches!(laws.laws, LawsOfAxes::PhasePlane(..));
-                roots.push(if is_change {
-                    "jet_pulses::JetPair::on_time_of_change"
-                } else {
-                    "jet_pulses::JetPair::on_time_of_torque"
-                });
-            }
-            if laws.wheels.is_some() {
-                roots.extend(["wheel_allocation::allocate", "wheel_allocation::limit_torques"]);
-            }
+            roots.extend(actuation_calls::roots(&laws.actuation, &[laws.commands_changes()]));
         }
     }
     roots
@@ -116,6 +113,7 @@ pub fn source(plan: &Plan<'_>, translation: &Translation, functions: &str) -> St
         plan.version().len() + 1,
         plan.version()
     );
+    parameters::defaults(plan, &mut text);
     text.push_str(functions);
     text
 }

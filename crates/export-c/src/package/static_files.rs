@@ -45,11 +45,18 @@ pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize) -> String 
          The translated functions are part of flexsc, under MIT or Apache-2.0.",
         plan.origin.file, plan.digest
     );
-    if plan.excluded_parts.is_empty() {
+    if plan.excluded_parts.iter().all(|part| part.is_supplied) {
         text.push_str("\nEvery part of the scenario's control loop is in this code.\n");
-    } else {
-        text.push_str("\nNot part of this code:\n\n| part of the scenario | the caller must |\n|---|---|\n");
-        for part in plan.excluded_parts {
+    }
+    for (is_supplied, head) in
+        [(false, "Not part of this code"), (true, "Inputs from guidance and ephemerides")]
+    {
+        let parts: Vec<_> =
+            plan.excluded_parts.iter().filter(|part| part.is_supplied == is_supplied).collect();
+        if !parts.is_empty() {
+            let _ = writeln!(text, "\n{head}:\n\n| part of the scenario | the caller must |\n|---|---|");
+        }
+        for part in parts {
             let _ = writeln!(text, "| `{}` | {} |", part.key, part.duty);
         }
     }

@@ -1,43 +1,50 @@
 //! Samples of the magnetic field and decisions of B-dot laws as calls.
 
-use flexsc_core::control::law::Command;
 use flexsc_core::{ControlDecision, SensorSample};
-use flexsc_flight::b_dot::limited_moment;
 
-use super::{CallVector, VectorError, compare};
-use crate::control_system::ControlSystem;
+use super::{CallVector, VectorError, call, compare, compare_commands};
+use crate::control_system::{BDotLaws, ControlSystem, FieldUnit};
 
-/// Calls the sample of the field with the reading of the magnetometer, if there is one, and adds the call.
-pub(super) fn sample(system: &mut ControlSystem, sample: &SensorSample, vectors: &mut Vec<CallVector>) {
-    let ControlSystem::BDot(laws) = &*system else { return };
-    let reading = sample.readings.get(laws.magnetometer).and_then(Option::as_ref);
-    let Some(sight) = reading.and_then(|reading| reading.sight) else { return };
-    let now = sample.now.ticks();
-    let inputs: Vec<u64> = sight.vector.iter().map(|component| component.to_bits()).collect();
-    let outputs = system.call(0, now, &inputs);
-    vectors.push(CallVector { call: 0, now, inputs, outputs });
+/// Returns the rate of change of the field that B-dot laws read.
+fn field_unit(system: &ControlSystem) -> Option<&FieldUnit> {
+    match system {
+        ControlSystem::BDot(own) => Some(&own.field),
+        ControlSystem::Modes(modes) => modes.field.as_ref(),
+        ControlSystem::Relays(_) | ControlSystem::Sampled(_) => None,
+    }
 }
 
-/// Calls the step of the laws with the rate of change that the engine's laws read, and adds the call.
+/// Calls the function of the field with the reading of the magnetometer, if there is one, and adds the call.
+pub(super) fn sample(system: &mut ControlSystem, sample: &SensorSample, vectors: &mut Vec<CallVector>) {
+    let Some(unit) = field_unit(system) else { return };
+    let reading = sample.readings.get(unit.sensor).and_then(Option::as_ref);
+    let Some(sight) = reading.and_then(|reading| reading.sight) else { return };
+    let inputs = sight.vector.iter().map(|component| component.to_bits()).collect();
+    call(system, "field", sample.now.ticks(), inputs, vectors);
+}
+
+/// Fails if the laws have read another rate of change in the engine.
+pub(super) fn compare_rate(
+    system: &ControlSystem,
+    decision: &ControlDecision,
+    number: usize,
+) -> Result<(), VectorError> {
+    let Some(known) = field_unit(system).map(|unit| unit.field.rate) else { return Ok(()) };
+    for (axis, own) in decision.axes.iter().zip([known.x, known.y, known.z]) {
+        compare(number, "the rate of change of the field", axis.estimate.field_rate, own)?;
+    }
+    Ok(())
+}
+
+/// Calls the step of B-dot laws alone, and adds the call.
 pub(super) fn step(
     system: &mut ControlSystem,
     decision: &ControlDecision,
     vectors: &mut Vec<CallVector>,
 ) -> Result<(), VectorError> {
-    let ControlSystem::BDot(laws) = &*system else { return Ok(()) };
-    let (limits, known) = (laws.limits, laws.field.rate);
-    let now = decision.now.ticks();
-    let rates: Vec<f64> = decision.axes.iter().map(|axis| axis.estimate.field_rate).collect();
-    for (rate, own) in rates.iter().zip([known.x, known.y, known.z]) {
-        compare(vectors.len(), "the rate of change of the field", *rate, own)?;
-    }
-    let inputs: Vec<u64> = rates.into_iter().map(f64::to_bits).collect();
-    let outputs = system.call(1, now, &inputs);
-    for axis in &decision.axes {
-        let Command::Moment(moment) = axis.output.command else { continue };
-        let limited = limited_moment(moment, limits[axis.axis]);
-        compare(vectors.len(), "the magnetic moment", limited, f64::from_bits(outputs[axis.axis]))?;
-    }
-    vectors.push(CallVector { call: 1, now, inputs, outputs });
-    Ok(())
+    compare_rate(system, decision, vectors.len())?;
+    let ControlSystem::BDot(own) = &*system else { return Ok(()) };
+    let BDotLaws { limits, .. } = own.laws;
+    let outputs = call(system, "step", decision.now.ticks(), Vec::new(), vectors);
+    compare_commands(vectors.len() - 1, decision, &outputs, limits)
 }

@@ -6,6 +6,7 @@ mod kalman;
 mod mode_calls;
 mod rate;
 mod samples;
+mod unloading;
 
 use std::fmt;
 
@@ -14,6 +15,7 @@ use flexsc_core::control::law::{Command, DecisionCause};
 use flexsc_core::control::sensor::Orientation;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::{ControlCall, ControlDecision, Scenario, Simulation, SimulationError};
+use flexsc_flight::b_dot::limited_moment;
 use flexsc_flight::ticks::Ticks;
 
 use crate::control_system::{Channel, ControlSystem, NotExportable};
@@ -110,6 +112,7 @@ pub fn record(scenario: &Scenario, most: usize) -> Result<Vec<CallVector>, Vecto
                 ControlCall::Sample(sample) => {
                     samples::replay(&mut system, scenario, &sample, &mut vectors);
                 }
+                ControlCall::Unloading(cycle) => unloading::replay(&mut system, &cycle, &mut vectors)?,
             }
         }
     }
@@ -161,21 +164,66 @@ fn replay(
     }
     kalman::shift(system, now, decision.shift, vectors);
     let ControlSystem::Sampled(laws) = &*system else { return Ok(()) };
-    let (inputs, call) = (step_inputs(&laws.layout().inputs, decision), laws.step_index());
-    let has_jets = laws.jets.is_some();
+    let layout = laws.layout();
+    let inputs = step_inputs(&layout.inputs, decision);
+    let outputs = call(system, "step", now, inputs, vectors);
+    let number = vectors.len() - 1;
+    compare_commands(number, decision, &outputs, [f64::INFINITY; 3])?;
+    compare_actuators(number, decision, |name| {
+        let place = layout.outputs.iter().take_while(|channel| channel.name != name);
+        outputs.get(place.map(|channel| channel.count).sum::<usize>()..).unwrap_or_default()
+    })
+}
+
+/// Calls a function, adds the call, and returns the words of its outputs.
+fn call(
+    system: &mut ControlSystem,
+    name: &str,
+    now: Ticks,
+    inputs: Vec<u64>,
+    vectors: &mut Vec<CallVector>,
+) -> Vec<u64> {
+    let call = system.calls().iter().position(|call| call.name == name).unwrap_or(0);
     let outputs = system.call(call, now, &inputs);
-    compare_commands(vectors.len(), decision, &outputs)?;
-    if let (Some(engine), [.., roll, pitch, yaw]) = (decision.on_times, &outputs[..]) {
-        for (engine, plain) in engine.into_iter().zip([roll, pitch, yaw]).filter(|_| has_jets) {
-            compare(vectors.len(), "the on-time", engine, f64::from_bits(*plain))?;
+    vectors.push(CallVector { call, now, inputs, outputs: outputs.clone() });
+    outputs
+}
+
+/// Fails if the torques of wheels or the on-times of jets in a decision, which `output` returns by their names, differ from the
+/// engine's.
+fn compare_actuators<'a>(
+    number: usize,
+    decision: &ControlDecision,
+    output: impl Fn(&str) -> &'a [u64],
+) -> Result<(), VectorError> {
+    compare_numbers(number, "the torque of a wheel", &decision.wheel_torques, output("wheel_torque"))?;
+    compare_numbers(
+        number,
+        "the on-time",
+        decision.on_times.as_ref().map_or(&[], |own| &own[..]),
+        output("on_time"),
+    )
+}
+
+/// Fails if numbers differ from those of the engine, as far as both have them.
+fn compare_numbers(number: usize, quantity: &str, engine: &[f64], plain: &[u64]) -> Result<(), VectorError> {
+    for (engine, plain) in engine.iter().zip(plain) {
+        // A zero may have another sign: that of a sum or a command of nothing.
+        let plain = f64::from_bits(*plain);
+        if *engine != 0.0 || plain != 0.0 {
+            compare(number, quantity, *engine, plain)?;
         }
     }
-    vectors.push(CallVector { call, now, inputs, outputs });
     Ok(())
 }
 
-/// Fails if the laws' outputs in a decision differ from the engine's commands.
-fn compare_commands(number: usize, decision: &ControlDecision, outputs: &[u64]) -> Result<(), VectorError> {
+/// Fails if the laws' outputs in a decision differ from the engine's commands; moments are limited (A m²).
+fn compare_commands(
+    number: usize,
+    decision: &ControlDecision,
+    outputs: &[u64],
+    limits: [f64; 3],
+) -> Result<(), VectorError> {
     for axis in &decision.axes {
         let found = f64::from_bits(outputs[axis.axis]);
         match axis.output.command {
@@ -187,7 +235,10 @@ fn compare_commands(number: usize, decision: &ControlDecision, outputs: &[u64]) 
                 let torque = f64::from_bits(outputs[axes + axis.axis]);
                 compare(number, "the torque", decision.demanded_torque[axis.axis], torque)?;
             }
-            Command::Moment(_) => {}
+            Command::Moment(moment) => {
+                let limited = limited_moment(moment, limits[axis.axis]);
+                compare(number, "the magnetic moment", limited, found)?;
+            }
         }
     }
     Ok(())

@@ -1,11 +1,12 @@
 //! Tests of conditions and decisions of modes of operation as calls of their control system.
 
-use flexsc_core::numerics::time::Instant;
 use flexsc_core::{ControlDecision, ModeTrial};
 use flexsc_flight::ticks::Ticks;
 
-use super::{CallVector, VectorError, compare, compare_commands, step_inputs};
-use crate::control_system::{ControlSystem, ModeSystem};
+use super::{
+    CallVector, VectorError, b_dot, call, compare, compare_actuators, compare_commands, step_inputs,
+};
+use crate::control_system::{ControlSystem, ModeLaws, ModeSystem};
 
 /// Calls the supervisor with what the engine's conditions read, and adds the call.
 pub(super) fn replay_trial(
@@ -15,7 +16,7 @@ pub(super) fn replay_trial(
 ) -> Result<(), VectorError> {
     let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
     let inputs = trial_inputs(modes, trial);
-    supervise(system, trial.now, inputs, vectors);
+    call(system, "supervise", trial.now.ticks(), inputs, vectors);
     let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
     compare(vectors.len() - 1, "the mode", trial.mode as f64, modes.supervisor.active as f64)
 }
@@ -38,14 +39,6 @@ fn trial_inputs(modes: &ModeSystem, trial: &ModeTrial) -> Vec<u64> {
     words
 }
 
-/// Calls the supervisor, and adds the call.
-fn supervise(system: &mut ControlSystem, now: Instant, inputs: Vec<u64>, vectors: &mut Vec<CallVector>) {
-    let ControlSystem::Modes(modes) = &*system else { return };
-    let (call, now) = (modes.call_index("supervise"), now.ticks());
-    let outputs = system.call(call, now, &inputs);
-    vectors.push(CallVector { call, now, inputs, outputs });
-}
-
 /// Calls the laws of the present mode with what the engine's laws read, and adds the call. A stage that begins at this time is
 /// entered before.
 pub(super) fn replay_decision(
@@ -61,19 +54,21 @@ pub(super) fn replay_decision(
     if modes.tables.written.is_empty() {
         let due = modes.supervisor.due(&modes.tables.modes, &modes.tables.exits);
         if due.has_time && due.time == now {
-            supervise(system, decision.now, Vec::new(), vectors);
+            call(system, "supervise", now, Vec::new(), vectors);
         }
     }
     let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
-    let call = modes.call_index("step");
-    let layout = system.calls().swap_remove(call);
-    let inputs = step_inputs(&layout.inputs, decision);
-    let outputs = system.call(call, now, &inputs);
-    if let ControlSystem::Modes(modes) = &*system
-        && let Some(own) = modes.law_outputs(&outputs)
-    {
-        compare_commands(vectors.len(), decision, &own)?;
+    let layout = system.calls().swap_remove(modes.call_index("step"));
+    let b_dot = modes.active_laws().and_then(ModeLaws::b_dot);
+    let limits = b_dot.map_or([f64::INFINITY; 3], |laws| laws.limits);
+    if b_dot.is_some() {
+        b_dot::compare_rate(system, decision, vectors.len())?;
     }
-    vectors.push(CallVector { call, now, inputs, outputs });
-    Ok(())
+    let outputs = call(system, "step", now, step_inputs(&layout.inputs, decision), vectors);
+    let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
+    let number = vectors.len() - 1;
+    if let Some(own) = modes.law_outputs(&outputs) {
+        compare_commands(number, decision, &own, limits)?;
+    }
+    compare_actuators(number, decision, |name| modes.output(&outputs, name))
 }

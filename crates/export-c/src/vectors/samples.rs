@@ -20,9 +20,6 @@ pub(super) fn replay(
     sample: &SensorSample,
     vectors: &mut Vec<CallVector>,
 ) {
-    if let ControlSystem::BDot(_) = &*system {
-        return b_dot::sample(system, sample, vectors);
-    }
     if let ControlSystem::Sampled(laws) = &*system {
         if laws.filter.is_some() {
             return kalman::sample(system, sample, vectors);
@@ -31,6 +28,17 @@ pub(super) fn replay(
             return rate::sample(system, sample, vectors);
         }
     }
+    attitude(system, scenario, sample, vectors);
+    b_dot::sample(system, sample, vectors);
+}
+
+/// Calls the attitude filter, and adds the calls.
+fn attitude(
+    system: &mut ControlSystem,
+    scenario: &Scenario,
+    sample: &SensorSample,
+    vectors: &mut Vec<CallVector>,
+) {
     let Some(unit) = system.estimator() else { return };
     let now = sample.now.ticks();
     let start = vectors.is_empty().then(|| start_inputs(scenario, sample)).flatten();

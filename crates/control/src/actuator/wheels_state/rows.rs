@@ -4,7 +4,7 @@ use std::mem;
 
 use flexsc_dynamics::three_axis::RotorObservation;
 use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::time::Instant;
+use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{BearingMotion, Bearings, Report, Wheel, Wheels};
 
 use super::{WheelState, WheelsState};
@@ -77,6 +77,10 @@ impl MomentumStorage for WheelsState {
         }
         let (seconds, wheels) = (self.elapsed(now), self.allocation.axes().iter().zip(&self.wheels));
         wheels.fold(Vector::zeros(), |sum, (axis, wheel)| sum + axis * wheel.momentum_at(seconds)).into()
+    }
+
+    fn commanded_torques(&self) -> Vec<f64> {
+        if self.delay > Span::ZERO { Vec::new() } else { self.commanded.clone() }
     }
 
     fn wheel_speeds(&self, now: Instant, rate: [f64; 3]) -> Vec<f64> {

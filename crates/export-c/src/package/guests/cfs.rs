@@ -6,7 +6,7 @@ use super::payload::Payload;
 use super::{camel, named};
 use crate::control_system::{CallLayout, Channel, NumberKind};
 use crate::package::signature::{has_time, inits_at_time};
-use crate::package::{PackageFile, Plan, text};
+use crate::package::{PackageFile, Plan, parameters, text};
 
 /// Longest name of a pipe: cFS keeps 20 bytes of it.
 const LONGEST_PIPE: usize = 19;
@@ -19,9 +19,26 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
     let pipe: String = prefix.to_uppercase().chars().take(LONGEST_PIPE - "_PIPE".len()).collect();
     let of_config = |name: &str| format!("{app}/config/default_{prefix}_app_{name}.h");
     let file = |path: String, template: &str| text(path, named(template, plan));
-    vec![
-        file("cfs/Makefile".to_owned(), include_str!("../files/cfs/Makefile")),
-        file(format!("{app}/CMakeLists.txt"), include_str!("../files/cfs/CMakeLists.txt")),
+    let has_table = !plan.parameters.is_empty();
+    let checked = " $(APP)/fsw/src/LOWER_parameters.c $(APP)/fsw/tables/LOWER_parameters_tbl.c";
+    let mut files = vec![
+        file(
+            "cfs/Makefile".to_owned(),
+            &include_str!("../files/cfs/Makefile").replace("MORE", if has_table { checked } else { "" }),
+        ),
+        file(
+            format!("{app}/CMakeLists.txt"),
+            &include_str!("../files/cfs/CMakeLists.txt")
+                .replace("MORE", if has_table { " fsw/src/LOWER_parameters.c" } else { "" })
+                .replace(
+                    "TABLES",
+                    if has_table {
+                        "add_cfe_tables(LOWER_app fsw/tables/LOWER_parameters_tbl.c)\n"
+                    } else {
+                        ""
+                    },
+                ),
+        ),
         file(format!("{app}/arch_build.cmake"), include_str!("../files/cfs/arch_build.cmake")),
         file(format!("{app}/mission_build.cmake"), include_str!("../files/cfs/mission_build.cmake")),
         file(of_config("msg"), &messages(plan)),
@@ -45,8 +62,47 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
             include_str!("../files/cfs/stub_base_msgids.h"),
         ),
         file("cfs/stubs/replay.c".to_owned(), &replay(plan)),
-    ]
+    ];
+    if let Some(source) = parameters::source(plan) {
+        files.extend([
+            text(format!("{app}/fsw/src/{prefix}_parameters.c"), source),
+            file(format!("{app}/fsw/tables/{prefix}_parameters_tbl.c"), &table(plan)),
+            file(
+                "cfs/stubs/cfe_tbl_filedef.h".to_owned(),
+                "/* STUB of the header of tables of cFE: see cfe.h. */\n#include \"cfe.h\"\n",
+            ),
+        ]);
+    }
+    files
 }
+
+/// Returns the table of parameters, with the defaults.
+fn table(plan: &Plan<'_>) -> String {
+    let rows: Vec<String> =
+        plan.parameters.iter().map(|own| format!("    .{} = {:?}", own.name, own.value)).collect();
+    format!(
+        "/* Table of the parameters, which the app validates. */\n#include \"cfe_tbl_filedef.h\"\n\n#include \"LOWER.h\"\n\n\
+         extern LOWER_parameters Parameters;\nLOWER_parameters Parameters = {{\n{}\n}};\n\n\
+         CFE_TBL_FILEDEF(Parameters, UPPER_APP.Parameters, Control parameters, LOWER_parameters.tbl)\n",
+        rows.join(",\n")
+    )
+}
+
+/// Returns the functions with which the app takes a table of parameters.
+fn table_functions() -> &'static str {
+    "/* Validates a table of parameters. */\nstatic int32_t UPPER_APP_ValidateParameters(void *Table)\n{\n    \
+     return LOWER_parameters_check((const LOWER_parameters *)Table) == 0 ? CFE_SUCCESS : -1;\n}\n\n\
+     /* Takes the parameters of a table that was loaded. */\nstatic void UPPER_APP_ManageParameters(void)\n{\n    void *Table = NULL;\n\n    \
+     CFE_TBL_Manage(UPPER_APP_Data.Table);\n    if (CFE_TBL_GetAddress(&Table, UPPER_APP_Data.Table) == CFE_TBL_INFO_UPDATED) {\n        \
+     UPPER_APP_Data.Parameters = *(const LOWER_parameters *)Table;\n        (void)LOWER_set_parameters(&UPPER_APP_Data.State, &UPPER_APP_Data.Parameters);\n    \
+     }\n    CFE_TBL_ReleaseAddress(UPPER_APP_Data.Table);\n}\n\n"
+}
+
+/// Statements of the app that register the table of parameters.
+const REGISTERED: &str = "    Status = CFE_TBL_Register(&UPPER_APP_Data.Table, \"Parameters\", sizeof(LOWER_parameters), CFE_TBL_OPT_DEFAULT,\n        \
+     UPPER_APP_ValidateParameters);\n    if (Status == CFE_SUCCESS) {\n        \
+     Status = CFE_TBL_Load(UPPER_APP_Data.Table, CFE_TBL_SRC_ADDRESS, &LOWER_default_parameters);\n    }\n    if (Status != CFE_SUCCESS) {\n        \
+     CFE_ES_WriteToSysLog(\"UPPER: no table, status 0x%08lX\\n\", (unsigned long)Status);\n        return Status;\n    }\n";
 
 /// Returns the name of the law: the last function.
 fn law<'a>(plan: &Plan<'a>) -> &'a CallLayout {
@@ -155,6 +211,12 @@ fn app_header(plan: &Plan<'_>) -> String {
         let name = camel(call.name);
         let _ = writeln!(outputs, "    UPPER_APP_{name}_Output_t {name}_Output;");
     }
+    if !plan.parameters.is_empty() {
+        outputs.push_str("    /* Table of parameters, and those in use. */\n    CFE_TBL_Handle_t Table;\n    LOWER_parameters Parameters;\n");
+    }
+    if inits_at_time(plan) {
+        outputs.push_str("    /* True from the first inputs on, at whose time the control system starts. */\n    bool HasStarted;\n");
+    }
     include_str!("../files/cfs/app.h").replace("LAW", &camel(law(plan).name)).replace("OUTPUTS", &outputs)
 }
 
@@ -188,11 +250,24 @@ fn app_source(plan: &Plan<'_>) -> String {
     }
     let subscribed: Vec<String> =
         names(plan, "INPUT").iter().map(|name| format!("UPPER_APP_{name}_MID")).collect();
-    // The last inputs have the time of a restart; before them it is 0.
-    let input = "UPPER_APP_Data.LAW_Input.Payload";
-    let time = format!(", (LOWER_ticks){{ .whole = {input}.now_whole, .part = {input}.now_part }}");
+    // Modes begin at the time of the first inputs.
+    let is_later = inits_at_time(plan);
+    let has_table = !plan.parameters.is_empty();
+    let set = "\n    (void)LOWER_set_parameters(&UPPER_APP_Data.State, &UPPER_APP_Data.Parameters);";
+    let start = if is_later {
+        "UPPER_APP_Data.HasStarted = false;".to_owned()
+    } else {
+        format!("LOWER_init(&UPPER_APP_Data.State);{}", if has_table { set } else { "" })
+    };
+    if has_table {
+        functions.insert_str(0, table_functions());
+        initialised.push_str(REGISTERED);
+    }
+    let defaults = "    UPPER_APP_Data.Parameters = LOWER_default_parameters;\n";
     include_str!("../files/cfs/app.c")
-        .replace("INIT_TIME", if inits_at_time(plan) { &time } else { "" })
+        .replace("BEGIN_STATE", &start)
+        .replace("DEFAULTS", if has_table { defaults } else { "" })
+        .replace("MANAGED", if has_table { "    UPPER_APP_ManageParameters();\n" } else { "" })
         .replace("LOWER_LAW", &format!("LOWER_{}", law(plan).name))
         .replace("LAW", &camel(law(plan).name))
         .replace("MEASURED", &measured)
@@ -210,11 +285,25 @@ fn function(plan: &Plan<'_>, index: usize, call: &CallLayout) -> String {
          LOWER_{lower}_output Output;\n    UPPER_APP_{name}_Output_Payload_t *Out = &UPPER_APP_Data.{name}_Output.Payload;\n\n",
         call.about
     );
+    if call.inputs.is_empty() {
+        text.push_str("    Input.unused = false;\n");
+    }
     for channel in &call.inputs {
         copy(channel, "Input.", "In->", " != 0", &mut text);
     }
-    let now =
-        if has_time(plan) { "(LOWER_ticks){ .whole = In->now_whole, .part = In->now_part }, " } else { "" };
+    let time = "(LOWER_ticks){ .whole = In->now_whole, .part = In->now_part }";
+    if inits_at_time(plan) {
+        let _ = writeln!(
+            text,
+            "    if (!UPPER_APP_Data.HasStarted) {{\n        LOWER_init(&UPPER_APP_Data.State, {time});\n{}        UPPER_APP_Data.HasStarted = true;\n    }}",
+            if plan.parameters.is_empty() {
+                ""
+            } else {
+                "        (void)LOWER_set_parameters(&UPPER_APP_Data.State, &UPPER_APP_Data.Parameters);\n"
+            }
+        );
+    }
+    let now = if has_time(plan) { format!("{time}, ") } else { String::new() };
     let _ = writeln!(text, "    LOWER_{lower}(&UPPER_APP_Data.State, {now}&Input, &Output);");
     if has_time(plan) {
         text.push_str("    Out->now_whole = In->now_whole;\n    Out->now_part = In->now_part;\n");
@@ -268,18 +357,20 @@ fn replay(plan: &Plan<'_>) -> String {
                     )
                 })
                 .collect();
-            let _ = writeln!(
-                tables,
-                "static const member {}_{side}s[{}] = {{\n{}\n}};\n",
-                call.name,
-                members.len(),
-                members.join(",\n")
-            );
+            // C has no empty array.
+            let list = if members.is_empty() { "NULL".to_owned() } else { format!("{}_{side}s", call.name) };
+            if !members.is_empty() {
+                let _ = writeln!(
+                    tables,
+                    "static const member {list}[{}] = {{\n{}\n}};\n",
+                    members.len(),
+                    members.join(",\n")
+                );
+            }
             rows.push(format!(
-                "    {{ UPPER_APP_{}_{}_MID, sizeof({message}), offsetof({message}, Payload), {}_{side}s, {} }}",
+                "    {{ UPPER_APP_{}_{}_MID, sizeof({message}), offsetof({message}, Payload), {list}, {} }}",
                 call.name.to_uppercase(),
                 side.to_uppercase(),
-                call.name,
                 members.len()
             ));
         }
@@ -293,9 +384,10 @@ fn replay(plan: &Plan<'_>) -> String {
     let most = plan.calls.iter().map(CallLayout::output_words).max().unwrap_or(0).max(1);
     let most_input = plan.calls.iter().map(CallLayout::input_words).max().unwrap_or(0);
     let time = if has_time(plan) { "#define HAS_TIME\n" } else { "" };
+    let table = if plan.parameters.is_empty() { "" } else { "#define HAS_PARAMETERS\n" };
     let _ = writeln!(
         tables,
-        "{time}enum {{ CALLS = {}, MOST_WORDS = {most}, MOST_BYTES = {} }};\n",
+        "{time}{table}enum {{ CALLS = {}, MOST_WORDS = {most}, MOST_BYTES = {} }};\n",
         plan.calls.len(),
         8 * (most.max(most_input) + 8) + 64
     );

@@ -6,7 +6,7 @@ use super::fprime_ports::{arrays, handled, type_name};
 use super::{camel, fprime_stubs, named};
 use crate::control_system::{CallLayout, Channel};
 use crate::package::signature::{has_time, inits_at_time};
-use crate::package::{PackageFile, Plan, text};
+use crate::package::{PackageFile, Plan, parameters, text};
 
 /// Keywords of F Prime's modelling language among the words that a member may have as its name.
 const KEYWORDS: [&str; 42] = [
@@ -65,21 +65,74 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
             .replace("LOWER_LAW", &format!("LOWER_{}", law(plan).name));
         text(path, named(&template, plan))
     };
-    vec![
-        file(format!("{directory}/CMakeLists.txt"), include_str!("../files/fprime/CMakeLists.txt")),
+    let has_parameters = !plan.parameters.is_empty();
+    let more = |text: &'static str| if has_parameters { text } else { "" };
+    let listed = more("    \"${CMAKE_CURRENT_LIST_DIR}/LOWER_parameters.c\"\n");
+    let mut files = vec![
+        file(
+            format!("{directory}/CMakeLists.txt"),
+            &include_str!("../files/fprime/CMakeLists.txt").replace("MORE", listed),
+        ),
         file(format!("{directory}/{component}.cpp"), &implementation(plan)),
         file(format!("{directory}/{component}.fpp"), &model(plan)),
         file(format!("{directory}/{component}.hpp"), &class(plan)),
         text(format!("{directory}/{prefix}.c"), source.to_owned()),
         text(format!("{directory}/{prefix}.h"), header.to_owned()),
-        file("fprime/Makefile".to_owned(), include_str!("../files/fprime/Makefile")),
+        file(
+            "fprime/Makefile".to_owned(),
+            &include_str!("../files/fprime/Makefile").replace("MORE", more(" LOWER_parameters.o")),
+        ),
         file(
             format!("fprime/stubs/Components/{component}/{component}ComponentAc.hpp"),
             &fprime_stubs::stub(plan),
         ),
         file("fprime/stubs/framework.fpp".to_owned(), include_str!("../files/fprime/framework.fpp")),
         file("fprime/stubs/replay.cpp".to_owned(), &fprime_stubs::replay(plan)),
-    ]
+    ];
+    files.extend(
+        parameters::source(plan).map(|source| text(format!("{directory}/{prefix}_parameters.c"), source)),
+    );
+    files
+}
+
+/// Returns the parameters of the model, and the event of those that are refused.
+fn modelled_parameters(plan: &Plan<'_>) -> String {
+    if plan.parameters.is_empty() {
+        return String::new();
+    }
+    let each = plan.parameters.iter().map(|own| {
+        format!("    @ {}\n    param {}: F64 default {:?}\n\n", own.about, own.name.to_uppercase(), own.value)
+    });
+    each.collect::<String>()
+        + "    @ Parameters are not taken, because one is beyond its limits\n    event ParametersRefused(place: I32) severity warning high \
+           format \"parameter {} is beyond its limits\" throttle 16\n\n    param get port prmGetOut\n\n    param set port prmSetOut\n\n"
+}
+
+/// Returns the functions that take the parameters.
+fn parameter_functions(plan: &Plan<'_>) -> String {
+    if plan.parameters.is_empty() {
+        return String::new();
+    }
+    let each = plan.parameters.iter().map(|own| {
+        format!("    parameters.{} = this->paramGet_{}(valid);\n", own.name, own.name.to_uppercase())
+    });
+    format!(
+        "void COMPONENT ::parameterUpdated(FwPrmIdType id) {{\n    (void)id;\n    this->takeParameters();\n}}\n\n\
+         void COMPONENT ::parametersLoaded() {{\n    this->takeParameters();\n}}\n\n\
+         void COMPONENT ::takeParameters() {{\n    Fw::ParamValid valid = Fw::ParamValid::INVALID;\n    LOWER_parameters parameters;\n{}    \
+         const I32 place = LOWER_parameters_check(&parameters);\n    if (place != 0) {{\n        this->log_WARNING_HI_ParametersRefused(place);\n        \
+         return;\n    }}\n    this->lock();\n    this->m_parameters = parameters;\n    (void)LOWER_set_parameters(&this->m_state, &this->m_parameters);\n    this->unLock();\n}}\n\n",
+        each.collect::<String>()
+    )
+}
+
+/// Returns the statement that sets the parameters of a state that was just set; nothing without parameters.
+fn set_parameters(plan: &Plan<'_>) -> &'static str {
+    if plan.parameters.is_empty() {
+        ""
+    } else {
+        "\n    (void)LOWER_set_parameters(&this->m_state, &this->m_parameters);"
+    }
 }
 
 /// Returns the law: the last function.
@@ -128,7 +181,10 @@ fn model(plan: &Plan<'_>) -> String {
     include_str!("../files/fprime/component.fpp")
         .replace("TYPES", &types)
         .replace("PORTS", &ports)
-        .replace("COUNTERS    @ Answer", &format!("{counters}    @ Answer"))
+        .replace(
+            "COUNTERSPARAMETERS    @ Answer",
+            &format!("{counters}{}    @ Answer", modelled_parameters(plan)),
+        )
         .replace("MEASURED", &measured)
 }
 
@@ -155,8 +211,18 @@ fn class(plan: &Plan<'_>) -> String {
         );
         let _ = writeln!(members, "    U32 m_{name}Calls;");
     }
+    if inits_at_time(plan) {
+        members.push_str("    bool m_hasStarted;\n");
+    }
+    let mut taken = "";
+    if !plan.parameters.is_empty() {
+        members.push_str("    LOWER_parameters m_parameters;\n");
+        taken = "    void parameterUpdated(FwPrmIdType id) override;\n    void parametersLoaded() override;\n\n    // Takes the parameters, if \
+                 they are within their limits.\n    void takeParameters();\n\n";
+    }
     include_str!("../files/fprime/component.hpp")
         .replace("HANDLERS", &handlers)
+        .replace("PARAMETERS", taken)
         .replace("FUNCTIONS", &functions)
         .replace("TIME    bool", if has_time(plan) { "    LOWER_ticks m_now;\n    bool" } else { "    bool" })
         .replace("MEMBERS", &members)
@@ -177,9 +243,20 @@ fn implementation(plan: &Plan<'_>) -> String {
             camel(call.name)
         );
     }
+    // Modes begin at the time of the first inputs.
+    let start = if inits_at_time(plan) {
+        zeros.push_str(", m_hasStarted(false)");
+        "this->m_hasStarted = false;".to_owned()
+    } else {
+        format!("LOWER_init(&this->m_state);{}", set_parameters(plan))
+    };
+    if !plan.parameters.is_empty() {
+        zeros.push_str(", m_parameters(LOWER_default_parameters)");
+    }
     let (initial, given) = if has_time(plan) { ("m_now(), ", "this->m_now, ") } else { ("", "") };
     include_str!("../files/fprime/component.cpp")
-        .replace("INIT_TIME", if inits_at_time(plan) { ", this->m_now" } else { "" })
+        .replace("BEGIN_STATE", &start)
+        .replace("PARAMETERS", &parameter_functions(plan))
         .replace("LAW(GIVEN", &format!("{law}({given}"))
         .replace("INITIAL", initial)
         .replace("ZEROS", &zeros)
@@ -191,7 +268,7 @@ fn implementation(plan: &Plan<'_>) -> String {
 fn handler(plan: &Plan<'_>, call: &CallLayout, is_law: bool) -> String {
     let name = call.name;
     let mut text = format!(
-        "void COMPONENT ::{name}Input_handler(FwIndexType portNum{}) {{\n    (void)portNum;\n    LOWER_{name}_input input;\n",
+        "void COMPONENT ::{name}Input_handler(FwIndexType portNum{}) {{\n    (void)portNum;\n    LOWER_{name}_input input{{}};\n",
         handled(plan, call)
     );
     for channel in &call.inputs {
@@ -216,8 +293,16 @@ fn handler(plan: &Plan<'_>, call: &CallLayout, is_law: bool) -> String {
 fn function(plan: &Plan<'_>, call: &CallLayout) -> String {
     let name = call.name;
     let given = if has_time(plan) { "now, " } else { "" };
+    let start = if inits_at_time(plan) {
+        format!(
+            "    if (!this->m_hasStarted) {{\n        LOWER_init(&this->m_state, now);{}\n        this->m_hasStarted = true;\n    }}\n",
+            set_parameters(plan).replace("\n    ", "\n        ")
+        )
+    } else {
+        String::new()
+    };
     let mut text = format!(
-        "void COMPONENT ::{name}({}const LOWER_{name}_input& input) {{\n    LOWER_{name}_output output;\n    \
+        "void COMPONENT ::{name}({}const LOWER_{name}_input& input) {{\n    LOWER_{name}_output output;\n{start}    \
          LOWER_{name}(&this->m_state, {given}&input, &output);\n",
         now(plan)
     );

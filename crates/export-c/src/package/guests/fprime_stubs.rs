@@ -6,6 +6,7 @@ use super::camel;
 use super::fprime_ports::{arguments, arrays, handled, parameters, type_name};
 use crate::control_system::NumberKind;
 use crate::package::Plan;
+use crate::package::parameters::FlightParameter;
 use crate::package::signature::has_time;
 
 /// Returns the stub of the class that F Prime generates.
@@ -44,6 +45,15 @@ pub(super) fn stub(plan: &Plan<'_>) -> String {
             "    void tlmWrite_{counter}(U32 value) {{ this->m_telemetry[\"{counter}\"] = value; }}"
         );
     }
+    let number = |own: &FlightParameter| {
+        let name = own.name.to_uppercase();
+        format!(
+            "    F64 paramGet_{name}(Fw::ParamValid& valid) {{\n        valid = Fw::ParamValid::VALID;\n        \
+             return this->m_numbers.count(\"{name}\") > 0 ? this->m_numbers[\"{name}\"] : {:?};\n    }}\n",
+            own.value
+        )
+    };
+    let numbers: String = plan.parameters.iter().map(number).collect();
     let arrays: Vec<String> = arrays(plan)
         .into_iter()
         .map(|(name, count, element)| format!("typedef StubArray<{element}, {count}> {name};\n"))
@@ -54,6 +64,7 @@ pub(super) fn stub(plan: &Plan<'_>) -> String {
         .replace("HANDLERS", &handlers)
         .replace("OUTPUTS", &outputs)
         .replace("TELEMETRY", &telemetry)
+        .replace("PARAMETERS", &numbers)
 }
 
 /// Returns the program that replays the vectors through the ports.
@@ -96,8 +107,20 @@ pub(super) fn replay(plan: &Plan<'_>) -> String {
             camel(name)
         );
     }
+    let tested = plan.parameters.first().map_or_else(String::new, |own| {
+        let set = |factor: f64| {
+            let (name, value) = (own.name.to_uppercase(), factor * own.value);
+            format!("    component.call_parameterUpdated(\"{name}\", {value:?});\n")
+        };
+        format!(
+            "{}{}    if (component.m_events[\"ParametersRefused\"] != 1) {{\n        return fail(count, \"other parameters refused\");\n    }}\n",
+            set(100.0),
+            set(1.5)
+        )
+    });
     include_str!("../files/fprime/replay.cpp")
         .replace("CASES    }", &format!("{cases}    }}"))
+        .replace("PARAMETERS", &tested)
         .replace("CALL_COUNTERS", &counters)
         .replace("CALL_COUNT", &plan.calls.len().to_string())
 }

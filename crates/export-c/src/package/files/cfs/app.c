@@ -31,7 +31,7 @@ static void UPPER_APP_WakeUp(void)
 /* Sends the counters. */
 static void UPPER_APP_SendHk(void)
 {
-    CFE_SB_TimeStampMsg(CFE_MSG_PTR(UPPER_APP_Data.HkTlm.TelemetryHeader));
+MANAGED    CFE_SB_TimeStampMsg(CFE_MSG_PTR(UPPER_APP_Data.HkTlm.TelemetryHeader));
     CFE_SB_TransmitMsg(CFE_MSG_PTR(UPPER_APP_Data.HkTlm.TelemetryHeader), true);
 }
 
@@ -74,7 +74,7 @@ static void UPPER_APP_Command(const CFE_MSG_Message_t *Message)
             CFE_EVS_SendEvent(UPPER_APP_RESET_EID, CFE_EVS_EventType_INFORMATION, "UPPER: counters are zero");
             break;
         case UPPER_APP_RESTART_CC:
-            LOWER_init(&UPPER_APP_Data.StateINIT_TIME);
+            BEGIN_STATE
             UPPER_APP_Data.Has_LAW_Input = false;
             UPPER_APP_Data.HkTlm.Payload.CommandCounter++;
             CFE_EVS_SendEvent(UPPER_APP_RESTART_EID, CFE_EVS_EventType_INFORMATION,
@@ -133,7 +133,7 @@ static CFE_Status_t UPPER_APP_Init(void)
 
     memset(&UPPER_APP_Data, 0, sizeof(UPPER_APP_Data));
     UPPER_APP_Data.RunStatus = CFE_ES_RunStatus_APP_RUN;
-    LOWER_init(&UPPER_APP_Data.StateINIT_TIME);
+DEFAULTS    BEGIN_STATE
 INITIALISED    CFE_MSG_Init(CFE_MSG_PTR(UPPER_APP_Data.HkTlm.TelemetryHeader), CFE_SB_ValueToMsgId(UPPER_APP_HK_TLM_MID),
         sizeof(UPPER_APP_Data.HkTlm));
     Status = CFE_EVS_Register(Filters, sizeof(Filters) / sizeof(Filters[0]), CFE_EVS_EventFilter_BINARY);

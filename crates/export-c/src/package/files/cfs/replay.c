@@ -159,6 +159,40 @@ static void compare_counters(const UPPER_APP_HkTlm_Payload_t *expect)
     }
 }
 
+#ifdef HAS_PARAMETERS
+static LOWER_parameters changed;
+
+/* Loads a table that the app must refuse, and one that it must take. */
+static void load_tables(void)
+{
+    double *numbers = (double *)&changed;
+    changed = LOWER_default_parameters;
+    numbers[0] *= 100.0;
+    if (CFE_TBL_Load(UPPER_APP_Data.Table, CFE_TBL_SRC_ADDRESS, &changed) == CFE_SUCCESS) {
+        fail("a table beyond the limits was taken");
+    }
+    numbers[0] = 1.5 * (numbers[0] / 100.0);
+    if (CFE_TBL_Load(UPPER_APP_Data.Table, CFE_TBL_SRC_ADDRESS, &changed) != CFE_SUCCESS) {
+        fail("a table was refused");
+    }
+}
+
+/* The parameters of the table hold after a restart too. */
+static void compare_parameters(void)
+{
+    if (memcmp(&UPPER_APP_Data.Parameters, &changed, sizeof changed) != 0) {
+        fail("other parameters");
+    }
+}
+#else
+static void load_tables(void)
+{
+}
+static void compare_parameters(void)
+{
+}
+#endif
+
 /* Sends the next faulty message or command; returns false after the last. */
 static bool send_fault(void)
 {
@@ -195,6 +229,7 @@ static bool send_fault(void)
             prepare(UPPER_APP_HK_TLM_MID, sizeof(UPPER_APP_NoArgsCmd_t));
             return true;
         case 8:
+            load_tables();
             prepare(UPPER_APP_SEND_HK_MID, sizeof(UPPER_APP_NoArgsCmd_t));
             return true;
         case 9:
@@ -218,6 +253,7 @@ static bool send_fault(void)
             prepare(UPPER_APP_SEND_HK_MID, sizeof(UPPER_APP_NoArgsCmd_t));
             return true;
         case 12:
+            compare_parameters();
             expect.CommandCounter = 1;
             compare_counters(&expect);
             return false;

@@ -66,6 +66,52 @@ CFE_Status_t CFE_SB_CreatePipe(CFE_SB_PipeId_t *PipeIdPtr, uint16 Depth, const c
     return Depth > 0 && strlen(PipeName) < 20 ? CFE_SUCCESS : -1;
 }
 
+static struct {
+    CFE_TBL_CallbackFuncPtr_t validate;
+    size_t size;
+    bool is_updated;
+    double numbers[1024];
+} table;
+
+CFE_Status_t CFE_TBL_Register(CFE_TBL_Handle_t *TblHandlePtr, const char *Name, size_t Size, uint16 TblOptionFlags,
+    CFE_TBL_CallbackFuncPtr_t TblValidationFuncPtr)
+{
+    *TblHandlePtr = 7;
+    table.validate = TblValidationFuncPtr;
+    table.size = Size;
+    return strlen(Name) < 16 && TblOptionFlags == CFE_TBL_OPT_DEFAULT && Size <= sizeof table.numbers ? CFE_SUCCESS : -1;
+}
+
+CFE_Status_t CFE_TBL_Load(CFE_TBL_Handle_t TblHandle, int SrcType, const void *SrcDataPtr)
+{
+    double numbers[1024];
+    memcpy(numbers, SrcDataPtr, table.size);
+    if (TblHandle != 7 || SrcType != CFE_TBL_SRC_ADDRESS || table.validate(numbers) != CFE_SUCCESS) {
+        return -1;
+    }
+    memcpy(table.numbers, numbers, table.size);
+    table.is_updated = true;
+    return CFE_SUCCESS;
+}
+
+CFE_Status_t CFE_TBL_Manage(CFE_TBL_Handle_t TblHandle)
+{
+    return TblHandle == 7 ? CFE_SUCCESS : -1;
+}
+
+CFE_Status_t CFE_TBL_GetAddress(void **TblPtr, CFE_TBL_Handle_t TblHandle)
+{
+    const CFE_Status_t status = table.is_updated ? (CFE_Status_t)CFE_TBL_INFO_UPDATED : CFE_SUCCESS;
+    *TblPtr = table.numbers;
+    table.is_updated = false;
+    return TblHandle == 7 ? status : -1;
+}
+
+CFE_Status_t CFE_TBL_ReleaseAddress(CFE_TBL_Handle_t TblHandle)
+{
+    return TblHandle == 7 ? CFE_SUCCESS : -1;
+}
+
 CFE_Status_t CFE_SB_Subscribe(CFE_SB_MsgId_t MsgId, CFE_SB_PipeId_t PipeId)
 {
     if (PipeId != 1 || subscriptions == MOST_SUBSCRIBED || bus_is_subscribed(MsgId.Value)) {

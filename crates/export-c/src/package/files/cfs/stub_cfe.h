@@ -85,6 +85,21 @@ CFE_Status_t CFE_ES_WriteToSysLog(const char *SpecStringPtr, ...) __attribute__(
 #define CFE_ES_PerfLogEntry(id) ((void)(id))
 #define CFE_ES_PerfLogExit(id) ((void)(id))
 
+/* Tables: the app has one. */
+typedef int16_t CFE_TBL_Handle_t;
+typedef int32_t (*CFE_TBL_CallbackFuncPtr_t)(void *TblPtr);
+enum { CFE_TBL_OPT_DEFAULT = 0, CFE_TBL_SRC_ADDRESS = 1, CFE_TBL_INFO_UPDATED = 0x4c000c00 };
+CFE_Status_t CFE_TBL_Register(CFE_TBL_Handle_t *TblHandlePtr, const char *Name, size_t Size, uint16 TblOptionFlags,
+    CFE_TBL_CallbackFuncPtr_t TblValidationFuncPtr);
+CFE_Status_t CFE_TBL_Load(CFE_TBL_Handle_t TblHandle, int SrcType, const void *SrcDataPtr);
+CFE_Status_t CFE_TBL_Manage(CFE_TBL_Handle_t TblHandle);
+CFE_Status_t CFE_TBL_GetAddress(void **TblPtr, CFE_TBL_Handle_t TblHandle);
+CFE_Status_t CFE_TBL_ReleaseAddress(CFE_TBL_Handle_t TblHandle);
+/* A table in a file of its own. */
+#define CFE_TBL_FILEDEF(ObjName, TblName, Desc, Filename) \
+    extern const char *const ObjName##_file[]; \
+    const char *const ObjName##_file[] = { #TblName, #Desc, #Filename };
+
 /* Numbers of messages. */
 #define CFE_PLATFORM_CMD_TOPICID_TO_MIDV(topic) (0x1800 | (topic))
 #define CFE_PLATFORM_TLM_TOPICID_TO_MIDV(topic) (0x0800 | (topic))

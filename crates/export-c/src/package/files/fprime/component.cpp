@@ -6,7 +6,7 @@ namespace MODULE {
 
 COMPONENT ::COMPONENT(const char* const compName)
     : COMPONENTComponentBase(compName), m_state(), m_input(), INITIALm_hasInput(false), m_wakeUps(0), m_missedInputs(0)ZEROS {
-    LOWER_init(&this->m_stateINIT_TIME);
+    BEGIN_STATE
 }
 
 COMPONENT ::~COMPONENT() {}
@@ -24,7 +24,7 @@ void COMPONENT ::run_handler(FwIndexType portNum, U32 context) {
     }
 }
 
-FUNCTIONSvoid COMPONENT ::NOOP_cmdHandler(FwOpcodeType opCode, U32 cmdSeq) {
+PARAMETERSFUNCTIONSvoid COMPONENT ::NOOP_cmdHandler(FwOpcodeType opCode, U32 cmdSeq) {
     this->log_ACTIVITY_HI_Exported();
     this->cmdResponse_out(opCode, cmdSeq, Fw::CmdResponse::OK);
 }
@@ -40,7 +40,7 @@ RESETS    this->log_WARNING_HI_NoInputs_ThrottleClear();
 }
 
 void COMPONENT ::RESTART_cmdHandler(FwOpcodeType opCode, U32 cmdSeq) {
-    LOWER_init(&this->m_stateINIT_TIME);
+    BEGIN_STATE
     this->m_hasInput = false;
     this->log_ACTIVITY_HI_Restarted();
     this->cmdResponse_out(opCode, cmdSeq, Fw::CmdResponse::OK);

@@ -23,7 +23,7 @@ PORTS    @ Reports the version
     @ Calls of the port `run` without new inputs
     telemetry MissedInputs: U32
 
-COUNTERS    @ Answer to NOOP
+COUNTERSPARAMETERS    @ Answer to NOOP
     event Exported severity activity high format "control system, exported by flexsc VERSION"
 
     @ The counters are zero

@@ -23,7 +23,7 @@ HANDLERS    void NOOP_cmdHandler(FwOpcodeType opCode, U32 cmdSeq) override;
     void RESET_COUNTERS_cmdHandler(FwOpcodeType opCode, U32 cmdSeq) override;
     void RESTART_cmdHandler(FwOpcodeType opCode, U32 cmdSeq) override;
 
-FUNCTIONS    LOWER_state m_state;
+PARAMETERSFUNCTIONS    LOWER_state m_state;
     // Inputs of the next decision, and true from their arrival to the decision.
     LOWER_LAW_input m_input;
 TIME    bool m_hasInput;

@@ -100,6 +100,6 @@ CASES    }
         component.m_events["CountersReset"] != 1 || component.m_events["Restarted"] != 1 || component.m_answered.size() != 3) {
         return fail(count, "other telemetry or events after the commands");
     }
-    std::printf("%lu calls equal through ports\n", count);
+PARAMETERS    std::printf("%lu calls equal through ports\n", count);
     return 0;
 }

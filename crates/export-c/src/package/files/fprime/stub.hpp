@@ -10,14 +10,21 @@
 #include <vector>
 
 typedef double F64;
+typedef std::int32_t I32;
 typedef std::int64_t I64;
 typedef std::uint32_t U32;
 typedef std::int32_t FwIndexType;
 typedef U32 FwOpcodeType;
+typedef U32 FwPrmIdType;
 
 namespace Fw {
 struct CmdResponse {
     enum T { OK };
+};
+struct ParamValid {
+    enum T { INVALID, VALID };
+    ParamValid(T valid) : e(valid) {}
+    T e;
 };
 }  // namespace Fw
 
@@ -67,6 +74,10 @@ class COMPONENTComponentBase {
     void call_run() { this->run_handler(0, 0); }
 CALLS    void call_NOOP() { this->NOOP_cmdHandler(1, 7); }
     void call_RESET_COUNTERS() { this->RESET_COUNTERS_cmdHandler(2, 8); }
+    void call_parameterUpdated(const char* name, F64 value) {
+        this->m_numbers[name] = value;
+        this->parameterUpdated(0);
+    }
     void call_RESTART() { this->RESTART_cmdHandler(3, 9); }
 
     // What the component sent: outputs by the name of the port, telemetry, events, and the opcodes of commands that it answered.
@@ -76,6 +87,10 @@ CALLS    void call_NOOP() { this->NOOP_cmdHandler(1, 7); }
     std::vector<FwOpcodeType> m_answered;
 
   protected:
+    virtual void parameterUpdated(FwPrmIdType id) { (void)id; }
+    virtual void parametersLoaded() {}
+    void lock() {}
+    void unLock() {}
     virtual void run_handler(FwIndexType portNum, U32 context) = 0;
 HANDLERS    virtual void NOOP_cmdHandler(FwOpcodeType opCode, U32 cmdSeq) = 0;
     virtual void RESET_COUNTERS_cmdHandler(FwOpcodeType opCode, U32 cmdSeq) = 0;
@@ -86,6 +101,7 @@ OUTPUTS    void tlmWrite_WakeUps(U32 value) { this->m_telemetry["WakeUps"] = val
 TELEMETRY    void log_ACTIVITY_HI_Exported() { this->m_events["Exported"]++; }
     void log_ACTIVITY_HI_CountersReset() { this->m_events["CountersReset"]++; }
     void log_ACTIVITY_HI_Restarted() { this->m_events["Restarted"]++; }
+PARAMETERS    void log_WARNING_HI_ParametersRefused(I32 place) { this->m_events["ParametersRefused"] += place > 0 ? 1 : 0; }
     void log_WARNING_HI_NoInputs() { this->m_events["NoInputs"]++; }
     void log_WARNING_HI_NoInputs_ThrottleClear() { this->m_events["NoInputs cleared"]++; }
     void cmdResponse_out(FwOpcodeType opCode, U32 cmdSeq, Fw::CmdResponse::T response) {
@@ -95,6 +111,7 @@ TELEMETRY    void log_ACTIVITY_HI_Exported() { this->m_events["Exported"]++; }
     }
 
   private:
+    std::map<std::string, F64> m_numbers;
     std::string m_name;
 };
 
