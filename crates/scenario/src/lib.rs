@@ -32,6 +32,7 @@ mod motion_estimate;
 mod one_mode;
 mod pace;
 mod plate_mounts;
+mod quantity_names;
 mod reference_values;
 mod remarks;
 mod requirement;

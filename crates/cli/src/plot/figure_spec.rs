@@ -4,6 +4,7 @@ use flexsc_figure::Figure;
 
 use super::cycle_data::{CycleData, RowSource};
 use super::motion::MotionData;
+use super::requirement::JudgedRun;
 use super::run_events::RunEvents;
 
 /// Declaration of a figure.
@@ -43,4 +44,6 @@ pub struct RunData<'a> {
     pub motion: &'a MotionData,
     /// Rows of three axes.
     pub cycles: &'a CycleData,
+    /// Signals and robustness of requirements over time.
+    pub judged: &'a JudgedRun,
 }
