@@ -1,6 +1,6 @@
 //! Requirements over time for FRET of NASA, whose sentences Ogma and Copilot turn into monitors in flight.
 //!
-//! A sentence has a scope, a trigger, a time and a condition: "while S upon E the craft shall within T seconds satisfy A". FRET
+//! A sentence has a scope, a trigger, a component, a time and a condition. FRET
 //! reads its meaning from the text when the file is imported; text in quotes has none.
 
 use std::collections::BTreeMap;
@@ -33,7 +33,7 @@ struct FretNames<'a> {
 
 impl FretNames<'_> {
     /// Returns the name of a quantity: letters, digits and underscores.
-    fn of(&mut self, quantity: ModeQuantity) -> String {
+    fn name(&mut self, quantity: ModeQuantity) -> String {
         let mut name = identifier(&self.scenario.quantity_name(quantity));
         while *self.names.entry(name.clone()).or_insert(quantity) != quantity {
             name.push('_');
@@ -55,9 +55,9 @@ impl FretNames<'_> {
                     Comparison::Above => ">",
                     Comparison::AtLeast => ">=",
                 };
-                Ok(format!("({} {sign} {})", self.of(*quantity), number(*limit)))
+                Ok(format!("({} {sign} {})", self.name(*quantity), number(*limit)))
             }
-            Expression::Flag(quantity) => Ok(self.of(*quantity)),
+            Expression::Flag(quantity) => Ok(self.name(*quantity)),
             Expression::Not(inner) => Ok(format!("(! {})", self.condition(inner)?)),
             Expression::All(all) => joined(all, " & "),
             Expression::Any(any) => joined(any, " | "),
@@ -215,7 +215,7 @@ fn in_words(own: &AssessedRequirement) -> String {
     }
 }
 
-/// Returns the name of the component that shall meet the requirements.
+/// Returns the name of the component that is to meet the requirements.
 fn component(scenario: &Scenario) -> String {
     identifier(&scenario.name)
 }

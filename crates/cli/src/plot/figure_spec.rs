@@ -3,8 +3,8 @@
 use flexsc_figure::Figure;
 
 use super::cycle_data::{CycleData, RowSource};
+use super::judged_run::JudgedRun;
 use super::motion::MotionData;
-use super::requirement::JudgedRun;
 use super::run_events::RunEvents;
 
 /// Declaration of a figure.

@@ -1,15 +1,11 @@
 //! Figure `requirement`: what each requirement over time reads, with its limit, the time in which it counts, and the instant that
 //! decides, from the motion that judges it.
 
-use std::path::Path;
-
 use flexsc_core::answer::requirement_id;
 use flexsc_core::control::operation::{Expression, ModeQuantity, ModeReadings, TimeWindow, Timed};
 use flexsc_core::formats::reader_units::{ReaderUnits, number};
-use flexsc_core::numerics::time::{Instant, Span};
-use flexsc_core::record::{
-    Log, Record, RecordError, RequirementRobustness, RequirementSignals, RobustnessOfRequirements, Sample,
-};
+use flexsc_core::numerics::time::Span;
+use flexsc_core::record::RequirementRobustness;
 use flexsc_core::scenario::{AssessedRequirement, RequirementFormula, RequirementSource};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, colour};
 
@@ -34,41 +30,6 @@ pub const SPEC: FigureSpec = FigureSpec {
 const WIDE: f64 = 30.0;
 /// Part of the largest value by which rounding may change one.
 const ROUNDING: f64 = 1e-6;
-
-/// Signals and robustness of the requirements over time of a repeated run.
-#[derive(Default)]
-pub struct JudgedRun {
-    signals: RequirementSignals,
-    robustness: Vec<RequirementRobustness>,
-}
-
-impl JudgedRun {
-    /// Repeats the run of a log.
-    ///
-    /// # Errors
-    /// A run that cannot be repeated.
-    pub fn read(story: &RunEvents, log: &Log, path: &Path) -> Result<Self, CliError> {
-        let mut judged = Self::default();
-        story.repeat(log, path, "signals of requirements", &mut judged)?;
-        Ok(judged)
-    }
-}
-
-impl Record for JudgedRun {
-    fn wants_requirement_signals(&self) -> bool {
-        true
-    }
-
-    fn record(&mut self, _: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        if let Some(signals) = sample.get::<RequirementSignals>() {
-            self.signals.clone_from(signals);
-        }
-        if let Some(RobustnessOfRequirements(all)) = sample.get() {
-            self.robustness.clone_from(all);
-        }
-        Ok(())
-    }
-}
 
 /// Signals of a requirement by the quantities that it reads.
 struct OwnSignals<'a>(Vec<(ModeQuantity, &'a [Point])>);
