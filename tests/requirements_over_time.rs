@@ -4,6 +4,8 @@ use flexsc_core::metrics::{MetricValue, Metrics, MetricsCollector};
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
+use serde_json::Value as Json;
+
 use crate::util::Dir;
 
 /// One undamped mode beside a fixed angle: the sensor has 1e-4 + 3e-4 cos(2 t) (rad).
@@ -66,6 +68,34 @@ modes = [{ frequency = 1.2, damping = 0.005, rotation = [5.0, 0, 0], rate = 0.01
 
 [sensor.sampled]
 period = 10.0
+
+[law.open]
+"#;
+
+/// A spacecraft enters the Earth's shadow, in which its panel bends at once and vibrates about its new shape.
+const SNAP: &str = r#"
+name = "snap"
+duration = 600.0
+
+[spacecraft]
+mass = 100.0
+inertia = [[70.0, 0, 0], [0, 50.0, 0], [0, 0, 60.0]]
+points = [{ name = "hub" }]
+
+[[appendage]]
+name = "panel"
+mass = 10.0
+inertia = [[30.0, 0, 0], [0, 5.0, 0], [0, 0, 30.0]]
+modes = [{ frequency = 1.2, damping = 1e-6, rotation = [5.0, 0, 0] }]
+thermal = { deflection = [1e-3], time_constant = 1e-3 }
+
+[environment]
+orbit = { semi_major_axis = 6.878137e6, anomaly = 1.5 }
+sun = [1, 0, 0]
+shadow = "cylinder"
+
+[sensor.sampled]
+period = 1000.0
 
 [law.open]
 "#;
@@ -211,6 +241,25 @@ fn the_crest_of_a_vibration_counts_between_the_ends_of_a_segment() {
 }
 
 #[test]
+fn the_crest_after_a_thermal_snap_counts_between_the_ends_of_a_segment() {
+    let holds = ["holds = \"always truth.sunlight > 0.5\"", "holds = \"always pointing_error < 8e-5\""];
+    let shadow = numbers(&metrics(&holding(SNAP, &holds[..1]), None), "requirement_times_s")[0];
+    assert!(shadow > 300.0 && shadow < 500.0, "{shadow}");
+    // J angle + r q = 0, and 1 - r²/J of the modal mass remains: q = d (1 - cos(W t)) is 0 again after a period.
+    let (inertia, coupling, deflection) = (100.0, 5.0, 1e-3);
+    let frequency = 1.2 / f64::sqrt(1.0 - coupling * coupling / inertia);
+    let end = shadow + 2.0 * std::f64::consts::PI / frequency;
+    // The error about yaw, the largest before the shadow, is 0 there: both ends of what follows are near 0.
+    let (yaw, middle) = (7e-5, f64::midpoint(shadow, end));
+    let text = SNAP.replace("duration = 600.0", &format!("duration = {end:?}"));
+    let turning = format!("attitude_error = [0, 0, {yaw:?}]\nrate = [0, 0, {:?}]\npoints", -yaw / shadow);
+    let found = metrics(&holding(&text.replacen("points", &turning, 1), &holds[1..]), None);
+    let largest = f64::hypot(2.0 * deflection * coupling / inertia, yaw * (middle / shadow - 1.0));
+    assert_near(&numbers(&found, "requirement_values"), &[largest], 1e-5 * largest);
+    assert_near(&numbers(&found, "requirement_times_s"), &[middle], 0.01);
+}
+
+#[test]
 fn modes_and_events_select_the_time() {
     let dir = Dir::new();
     dir.write(
@@ -273,6 +322,149 @@ fn campaigns_count_what_decides_and_stop_when_it_has() {
     dir.run("simulate idle.toml --runs 20").exits(0).says(&["not exercised"]);
     dir.run("simulate idle.toml --runs 20 --until-decided -o out").exits(2).says(&["--until-decided"]);
     dir.run("worst half.toml --requirement 0 --points 20").exits(3).says(&["missed"]);
+}
+
+/// A rigid body whose sampled law settles from 0.01 rad.
+const AIM: &str = r#"
+name = "aim"
+duration = 60.0
+
+[body.planar]
+angle = 0.01
+inertia = 100.0
+
+[sensor.sampled]
+period = 0.1
+
+[law.pd]
+k_p = 4.0
+k_d = 20.0
+period = 0.1
+"#;
+
+#[test]
+fn a_law_is_tuned_for_a_requirement_over_time() {
+    let dir = Dir::new();
+    let keys = "holds = \"pointing_error < 1e-3\"\nwithin = \"20 s\"\nfor = \"30 s\"";
+    let text = holding(AIM, &[keys]);
+    dir.write("aim.toml", &text);
+    let value = |k_d: f64| {
+        let text = text.replace("k_d = 20.0", &format!("k_d = {k_d:?}"));
+        numbers(&metrics(&text, None), "requirement_values")[0]
+    };
+    let line = "tune aim.toml --vary law.pd.k_d=5:60 --objective 0 --json";
+    let tuned = dir.run(line).exits(0).json();
+    let number = |pointer: &str| tuned.pointer(pointer).and_then(Json::as_f64).expect("a number");
+    let (k_d, after) = (number("/keys/0/after"), number("/measures/0/after"));
+    assert_near(&[number("/measures/0/before"), after], &[value(20.0), value(k_d)], 1e-12);
+    let best = (0..56).map(|k| value(5.0 + f64::from(k))).fold(f64::INFINITY, f64::min);
+    assert!(after <= best && after < 0.5 * value(20.0), "{after:e} at {k_d}, {best:e}");
+    let kept = "tune aim.toml --vary law.pd.k_d=5:60 --keep 0";
+    dir.run(kept).exits(0).says(&["206.3 arcsec"]);
+    dir.write(
+        "zero.toml",
+        holding(
+            AIM,
+            &["holds = \"time > 3 implies pointing_error < 0.1\"", "holds = \"pointing_error < 0\""],
+        ),
+    );
+    dir.run("tune zero.toml --vary law.pd.k_d=5:60 --objective 1")
+        .exits(2)
+        .says(&["requirement[1]", "not above 0"]);
+}
+
+#[test]
+fn the_figure_of_a_requirement_names_what_decides() {
+    let dir = Dir::new();
+    let after =
+        "holds = \"pointing_error < 1e-4\"\nafter = \"mode enters fine\"\nwithin = \"10 s\"\nfor = \"15 s\"";
+    let all = [
+        "holds = \"pointing_error < 2e-3\"",
+        after,
+        "holds = \"when mode enters fine: within 5 s: mode(fine)\"",
+    ];
+    dir.write("modes.toml", holding(MODES, &all));
+    dir.run("simulate modes.toml").exits(0);
+    dir.run("plot modes.mcap --what requirement -o all.svg").exits(0).says(&["repeats the run"]);
+    let drawn = dir.text("all.svg");
+    for words in [
+        "R1 0: robustness",
+        "R2 1: robustness",
+        "R3 2: robustness",
+        "decides at",
+        "condition holds",
+        "counts",
+    ] {
+        assert!(drawn.contains(words), "{words}");
+    }
+    dir.run("plot modes.mcap --what requirement:R2 -o one.svg").exits(0);
+    let one = dir.text("one.svg");
+    assert!(one.contains("R2 1: robustness") && !one.contains("R1 0"), "{one}");
+    dir.run("plot modes.mcap --what requirement:R9").exits(2).says(&["requirement:R9", "R2 (1)"]);
+}
+
+#[test]
+fn requirements_become_sentences_of_fret() {
+    let dir = Dir::new();
+    let cases = [
+        ("holds = \"pointing_error < 6e-5\"", "the modes shall always satisfy (pointing_error < 6e-5)"),
+        (
+            "holds = \"pointing_error < 6e-4\"\nmode = \"fine\"",
+            "while mode_fine the modes shall always satisfy (pointing_error < 0.0006)",
+        ),
+        (
+            "holds = \"always[60 s, 300 s] (truth.rate <= 2 or not mode(fine))\"",
+            "while ((run_time >= 60) & (run_time <= 300)) the modes shall always satisfy ((truth_rate <= 2) | (! mode_fine))",
+        ),
+        (
+            "holds = \"eventually[0, 1 min] mode(fine)\"",
+            "the modes shall within 60 seconds satisfy mode_fine",
+        ),
+        ("holds = \"eventually mode(fine)\"", "the modes shall eventually satisfy mode_fine"),
+        (
+            "holds = \"when silent(sampled) > 3: within 10 s: mode(safe)\"",
+            "upon (silent_sampled > 3) the modes shall within 10 seconds satisfy mode_safe",
+        ),
+        (
+            "holds = \"when mode enters fine: for 30 s: estimate.rate < 0.1\"",
+            "upon mode_fine the modes shall for 30 seconds satisfy (estimate_rate < 0.1)",
+        ),
+        (
+            "holds = \"when mode enters fine: always estimate.rate < 0.1\"",
+            "upon mode_fine the modes shall always satisfy (estimate_rate < 0.1)",
+        ),
+        (
+            "holds = \"when mode enters fine: estimate.rate < 0.1\"",
+            "upon mode_fine the modes shall immediately satisfy (estimate_rate < 0.1)",
+        ),
+        (
+            "holds = \"when mode enters fine: within 60 s, for 30 s: mode(fine)\"",
+            "\"when mode enters fine: within 60 s, for 30 s: mode(fine)\"",
+        ),
+        ("holds = \"mode(coarse) until[0, 60] mode(fine)\"", "\"mode(coarse) until[0, 60] mode(fine)\""),
+        ("holds = \"time_outside_s < 1 min\"", "\"time_outside_s, at most 1 min\""),
+    ];
+    dir.write("modes.toml", holding(MODES, &cases.map(|(keys, _)| keys)));
+    let printed = dir.run("export modes.toml --format fret").exits(0);
+    let printed = printed
+        .says(&["R10 is text alone", "one operator over time", "R11", "until", "R12", "one value"])
+        .printed();
+    let file: Json = serde_json::from_str(&printed).expect("JSON");
+    let texts = file["requirements"].as_array().expect("a list").iter();
+    let texts: Vec<&str> = texts.map(|own| own["fulltext"].as_str().expect("a text")).collect();
+    assert_eq!(texts, cases.map(|(_, text)| text));
+    let variables = file["variables"].as_array().expect("a list").iter();
+    let kinds: Vec<String> = variables
+        .map(|own| format!("{} {} {}", own["variable_name"], own["dataType"], own["description"]))
+        .collect();
+    assert!(kinds.contains(&r#""estimate_rate" "double" "estimate.rate (rad/s)""#.to_owned()), "{kinds:?}");
+    assert!(kinds.contains(&r#""mode_fine" "boolean" "mode(fine)""#.to_owned()), "{kinds:?}");
+    dir.run("simulate modes.toml -o run.mcap");
+    dir.run("export run.mcap -o log.json").exits(0);
+    assert_eq!(dir.text("log.json"), printed);
+    dir.write("bare.toml", MODES);
+    dir.run("export bare.toml -o bare.json").exits(2).says(&["has no [[requirement]]"]);
+    dir.run("export modes.toml -o a.json --speed 3").exits(2).says(&["--speed"]);
 }
 
 #[test]

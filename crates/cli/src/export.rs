@@ -17,7 +17,7 @@ use crate::{files, out};
 
 #[derive(clap::Args)]
 pub struct ExportArgs {
-    /// Log file
+    /// Log file; for fret also a scenario
     log: PathBuf,
     /// Topic, such as /command [default: list the topics of the log]
     #[arg(long, value_name = "TOPIC")]
@@ -25,7 +25,7 @@ pub struct ExportArgs {
     /// Format: csv and jsonl of a topic, the others of the whole run [default: by the ending of FILE, else csv]
     #[arg(long, value_enum)]
     format: Option<ExportFormat>,
-    /// File to write: FILE.csv, .jsonl, .aem, .oem, .glb, or .bin for Vizard [default: stdout]
+    /// File to write: FILE.csv, .jsonl, .aem, .oem, .glb, .bin for Vizard, or .json for FRET [default: stdout]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Replace a FILE of other content
@@ -49,17 +49,20 @@ enum ExportFormat {
     Glb,
     /// Messages for Vizard, the viewer of Basilisk
     Vizard,
+    /// Requirements of the run's scenario as sentences of FRET, for monitors by Copilot
+    Fret,
 }
 
 impl ExportFormat {
     /// All formats with the file extension of each.
-    const ENDINGS: [(&'static str, Self); 6] = [
+    const ENDINGS: [(&'static str, Self); 7] = [
         ("csv", Self::Csv),
         ("jsonl", Self::Jsonl),
         ("aem", Self::Aem),
         ("oem", Self::Oem),
         ("glb", Self::Glb),
         ("bin", Self::Vizard),
+        ("json", Self::Fret),
     ];
 
     /// Returns true if the format holds one topic, and false if it holds the whole run.
@@ -97,7 +100,7 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
         }
         return whole_run::run(args, format);
     }
-    args.handover.refuse_for_table()?;
+    args.handover.refuse()?;
     if args.out.is_some() && args.topic.is_none() {
         let why = "-o: a table is of one topic\n\nhint: --topic names it, and `flexsc export LOG` lists them";
         return Err(CliError::Arguments(why.to_owned()));

@@ -5,6 +5,7 @@
 mod aem;
 mod calendar;
 mod error;
+mod fret;
 mod glb;
 mod motion_rows;
 mod oem;
@@ -17,6 +18,7 @@ use flexsc_core::Scenario;
 use flexsc_core::record::Log;
 
 pub use error::HandoverError;
+pub use fret::{FretRequirements, fret_requirements};
 pub use options::{HandoverFormat, HandoverOptions};
 
 /// Returns the file of a log in a format of other programs.

@@ -37,6 +37,10 @@ impl<R: Record + ?Sized> Record for &mut R {
         (**self).wants_switchings()
     }
 
+    fn wants_requirement_signals(&self) -> bool {
+        (**self).wants_requirement_signals()
+    }
+
     fn piece_demand(&self) -> PieceDemand {
         (**self).piece_demand()
     }
@@ -76,6 +80,10 @@ impl<R: Record> Record for Option<R> {
         self.as_ref().is_some_and(Record::wants_switchings)
     }
 
+    fn wants_requirement_signals(&self) -> bool {
+        self.as_ref().is_some_and(Record::wants_requirement_signals)
+    }
+
     fn piece_demand(&self) -> PieceDemand {
         self.as_ref().map_or(PieceDemand::None, Record::piece_demand)
     }
@@ -113,6 +121,10 @@ impl<A: Record, B: Record> Record for (A, B) {
 
     fn wants_switchings(&self) -> bool {
         self.0.wants_switchings() || self.1.wants_switchings()
+    }
+
+    fn wants_requirement_signals(&self) -> bool {
+        self.0.wants_requirement_signals() || self.1.wants_requirement_signals()
     }
 
     fn piece_demand(&self) -> PieceDemand {

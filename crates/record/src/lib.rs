@@ -55,7 +55,7 @@ pub use recover::recover;
 pub use report::{LogRow, LoggedRevisions, Report, ReportValue};
 pub use requirement_errors::{
     RequirementError, RequirementErrors, RequirementRobustness, RequirementScope, RequirementScopes,
-    RobustnessOfRequirements,
+    RequirementSignals, RobustnessOfRequirements,
 };
 pub use scene_source::{OneAxisPose, ScenePose, SceneSource, SceneThrust, ThreeAxisPose};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, ReadingOutcome, Sliding, Trust, Use, Watch};
@@ -131,6 +131,11 @@ pub trait Record {
     /// Returns true if the record needs switchings.
     fn wants_switchings(&self) -> bool {
         true
+    }
+
+    /// Returns true if the record needs the signals that requirements over time read.
+    fn wants_requirement_signals(&self) -> bool {
+        false
     }
 
     /// Returns the selection of pieces of a one-axis motion that the record needs as a whole. A piece lasts from one

@@ -30,6 +30,23 @@ pub struct RequirementRobustness {
     pub at: f64,
 }
 
+impl RequirementRobustness {
+    /// Returns the robustness that decides, infinite if no part of the run was to meet anything; `None` if what follows the
+    /// run decides.
+    pub fn decided(&self) -> Option<f64> {
+        if self.least >= 0.0 { Some(self.least) } else { Some(self.largest).filter(|largest| *largest < 0.0) }
+    }
+}
+
+/// Signals that the requirements over time of a run read, for records that want them.
+#[derive(Clone, Debug, Default)]
+pub struct RequirementSignals {
+    /// Times (s) and values of each quantity, to be joined by straight lines.
+    pub signals: Vec<Vec<(f64, f64)>>,
+    /// Index of each requirement over time, and of the signal of each of its comparisons and flags.
+    pub of_requirements: Vec<(usize, Vec<usize>)>,
+}
+
 /// Requirements that begin or cease to count at an instant.
 #[derive(Clone, Debug, Default)]
 pub struct RequirementScopes(pub Vec<RequirementScope>);

@@ -48,6 +48,20 @@ impl MotionLimits {
         self.inverse_inertia * (torque + rate * momentum) + modal_rotation * self.modal_torque * torque
     }
 
+    /// Returns a bound of the thermal forces on the modes (N/sqrt(kg)) up to an instant from the last one at which the light
+    /// began to change, or ceased to: a level under steady light only rises or falls, and none is above 1.
+    pub fn thermal_force(plant: &Plant, now: Instant, is_light_steady: bool) -> f64 {
+        let around = plant.quantities().three_axis().and_then(|motion| motion.surroundings());
+        let each = around.into_iter().flat_map(|around| {
+            around.thermal_forces().iter().enumerate().map(move |(index, heated)| {
+                let level =
+                    if is_light_steady { around.thermal_level(index, now.seconds()).abs() } else { 1.0 };
+                level * heated.forces.iter().map(|force| force * force).sum::<f64>().sqrt()
+            })
+        });
+        each.sum()
+    }
+
     /// Returns a bound of the second derivative (rad/s³) of the rigid rate under a constant torque (N m) and that of the
     /// environment, given bounds of the elastic rate (rad/s) and of the acceleration (rad/s²) of the hub.
     pub fn bend(&self, plant: &Plant, [elastic, acceleration]: [f64; 2], torque: f64, now: Instant) -> f64 {

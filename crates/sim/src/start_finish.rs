@@ -29,6 +29,9 @@ impl Simulation {
         if let Some(event) = self.operation.first_event(now) {
             self.recorder.record_mode(now, &event, record)?;
         }
+        if record.wants_requirement_signals() {
+            self.requirements.keep_signals();
+        }
         self.update_requirements(|requirements, run| requirements.observe(run, true));
         let (run, recorder) = self.view();
         Ok(recorder.record_start(&run, record)?)

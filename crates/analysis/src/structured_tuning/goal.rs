@@ -12,8 +12,9 @@ pub enum TuningObjective {
     Margin,
     /// Longest settling time of all plants, which is minimised.
     Settling,
-    /// Largest rms of all plants of the pointing index of the requirement with this name, which is minimised.
-    Index(String),
+    /// Largest value of all plants of the requirement with this name, which is minimised: the rms of its pointing index, or the
+    /// value of one over time.
+    Requirement(String),
 }
 
 /// Quantity that a tuning keeps within a limit, for every plant.
@@ -23,8 +24,8 @@ pub enum TuningLimit {
     Margin(f64),
     /// Longest settling time (s).
     Settling(f64),
-    /// Pointing index of the requirement with this name, at its limit.
-    Index(String),
+    /// Requirement with this name, at its limit.
+    Requirement(String),
 }
 
 impl FromStr for TuningObjective {
@@ -40,7 +41,7 @@ impl FromStr for TuningObjective {
             }
             "margin" => Self::Margin,
             "settling" => Self::Settling,
-            name => Self::Index(name.to_owned()),
+            name => Self::Requirement(name.to_owned()),
         })
     }
 }
@@ -62,7 +63,7 @@ impl FromStr for TuningLimit {
                 Ok(Self::Settling(positive(value, "s")?))
             }
             (None, None) if !matches!(text.trim(), "" | "margin" | "settling") => {
-                Ok(Self::Index(text.trim().to_owned()))
+                Ok(Self::Requirement(text.trim().to_owned()))
             }
             _ => Err(wrong()),
         }
@@ -100,10 +101,10 @@ mod tests {
     #[test]
     fn texts_of_objectives_and_limits() {
         assert_eq!("margin".parse(), Ok(TuningObjective::Margin));
-        assert_eq!("jitter".parse(), Ok(TuningObjective::Index("jitter".to_owned())));
+        assert_eq!("jitter".parse(), Ok(TuningObjective::Requirement("jitter".to_owned())));
         assert_eq!("margin >= 0.5".parse(), Ok(TuningLimit::Margin(0.5)));
         assert_eq!("settling<=60".parse(), Ok(TuningLimit::Settling(60.0)));
-        assert_eq!("jitter".parse(), Ok(TuningLimit::Index("jitter".to_owned())));
+        assert_eq!("jitter".parse(), Ok(TuningLimit::Requirement("jitter".to_owned())));
         for wrong in [
             "",
             "margin",

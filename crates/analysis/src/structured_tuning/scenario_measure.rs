@@ -1,4 +1,5 @@
-//! Measures of a scenario's loop that a tuning minimises or limits: settling times and pointing indices.
+//! Measures of a scenario's loop that a tuning minimises or limits: settling times, pointing indices, and requirements over
+//! time, by a run.
 
 use flexsc_formats::document::ConfigError;
 
@@ -6,7 +7,10 @@ use super::goal::TunedMeasure;
 use crate::budget::{LEVELS, linear_noise, sigmas};
 use crate::noise::{NoiseError, NoisyLoop};
 use crate::open_loop::LoopParts;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Record, RecordError, RequirementRobustness, RobustnessOfRequirements, Sample};
 use flexsc_scenario::{RequirementSource, Scenario};
+use flexsc_sim::Simulation;
 
 /// Measure of a scenario's loop.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,13 +19,36 @@ pub enum ScenarioMeasure {
     Settling,
     /// Rms of the pointing index of the requirement with this index under the noise of the loop.
     Index(usize),
+    /// Value of the requirement over time with this index, in a run.
+    OverTime(usize),
+}
+
+/// Robustness of the requirements over time of a run.
+#[derive(Default)]
+struct RobustnessOfRun(Vec<RequirementRobustness>);
+
+impl Record for RobustnessOfRun {
+    fn wants_switchings(&self) -> bool {
+        false
+    }
+
+    fn wants_journal(&self) -> bool {
+        false
+    }
+
+    fn record(&mut self, _: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        if let Some(RobustnessOfRequirements(all)) = sample.get() {
+            self.0.clone_from(all);
+        }
+        Ok(())
+    }
 }
 
 impl ScenarioMeasure {
     /// Returns the measure of the requirement with a name.
     ///
     /// # Errors
-    /// No requirement with the name, and one on a metric or over time.
+    /// No requirement with the name, one on a metric, and one over time whose limit is not above 0.
     pub fn for_requirement(scenario: &Scenario, name: &str) -> Result<Self, ConfigError> {
         let all = &scenario.study.requirements;
         let Some(index) = all.iter().position(|own| own.name == name) else {
@@ -34,8 +61,14 @@ impl ScenarioMeasure {
         };
         match all[index].source {
             RequirementSource::Error(_) => Ok(Self::Index(index)),
-            RequirementSource::Metric(..) | RequirementSource::Formula(_) => {
-                let why = "limits no pointing index, which a tuning of the linear loop needs: `quantity` must be `pointing_error`, \
+            RequirementSource::Formula(_) if all[index].limit > 0.0 => Ok(Self::OverTime(index)),
+            RequirementSource::Formula(_) => {
+                let why =
+                    "has a limit that is not above 0, and a tuning measures values as parts of their limit";
+                Err(ConfigError::new(scenario.requirement_key(name), why))
+            }
+            RequirementSource::Metric(..) => {
+                let why = "limits a metric, and a tuning needs a pointing index or `holds`: `quantity` must be `pointing_error`, \
                            `rate_error` or `line_of_sight`";
                 Err(ConfigError::new(scenario.requirement_key(name), why))
             }
@@ -51,6 +84,14 @@ impl ScenarioMeasure {
                 let own = &scenario.study.requirements[*index];
                 let own_limit = is_limited.then(|| own.limit / sigmas(own.level.min(LEVELS[2])));
                 TunedMeasure { name: own.name.clone(), unit: own.unit, limit: own_limit }
+            }
+            Self::OverTime(index) => {
+                let own = &scenario.study.requirements[*index];
+                TunedMeasure {
+                    name: own.name.clone(),
+                    unit: own.unit,
+                    limit: is_limited.then_some(own.limit),
+                }
             }
         }
     }
@@ -84,6 +125,21 @@ impl ScenarioMeasure {
                     format!("{name}: the linear loop has no index of the requirement `{}`", own.name)
                 })?;
                 Ok(vec![rms])
+            }
+            Self::OverTime(index) => {
+                let own = &scenario.study.requirements[*index];
+                let RequirementSource::Formula(formula) = &own.source else {
+                    return Err(format!("{name}: the requirement `{}` is not over time", own.name));
+                };
+                let mut found = RobustnessOfRun::default();
+                let ended = Simulation::new(scenario, 0).run(&mut found);
+                let robustness = found.0.iter().find(|found| found.requirement == *index);
+                let robustness =
+                    robustness.filter(|_| ended.is_ok()).and_then(RequirementRobustness::decided);
+                // A run that fails or does not decide is beyond every limit.
+                Ok(vec![
+                    robustness.map_or(f64::INFINITY, |robustness| own.limit - robustness * formula.scale),
+                ])
             }
         }
     }

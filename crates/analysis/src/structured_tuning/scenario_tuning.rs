@@ -204,7 +204,7 @@ impl ScenarioTuning {
         let objective = match &self.objective {
             TuningObjective::Margin => None,
             TuningObjective::Settling => Some(ScenarioMeasure::Settling),
-            TuningObjective::Index(name) => Some(ScenarioMeasure::for_requirement(scenario, name)?),
+            TuningObjective::Requirement(name) => Some(ScenarioMeasure::for_requirement(scenario, name)?),
         };
         goal.minimised = objective.map(&mut place);
         let mut given = Vec::new();
@@ -214,7 +214,7 @@ impl ScenarioTuning {
                 TuningLimit::Settling(most) => {
                     given.push((place(ScenarioMeasure::Settling), (Some(*most), true)));
                 }
-                TuningLimit::Index(name) => {
+                TuningLimit::Requirement(name) => {
                     given.push((place(ScenarioMeasure::for_requirement(scenario, name)?), (None, true)));
                 }
             }

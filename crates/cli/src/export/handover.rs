@@ -26,8 +26,8 @@ pub struct HandoverArgs {
 }
 
 impl HandoverArgs {
-    /// Returns an error if an option of whole runs is given for a table.
-    pub fn refuse_for_table(&self) -> Result<(), CliError> {
+    /// Returns an error if an option of whole runs is given for a table or for requirements.
+    pub fn refuse(&self) -> Result<(), CliError> {
         let given = [
             ("--epoch", self.epoch.is_some()),
             ("--frame", self.frame.is_some()),

@@ -2,14 +2,15 @@
 
 use std::io::{self, IsTerminal, Write};
 
+use flexsc_core::Scenario;
 use flexsc_core::record::Log;
 use flexsc_core::scenario::date_from_text;
-use flexsc_handover::{HandoverError, HandoverFormat, HandoverOptions, hand_over};
+use flexsc_handover::{HandoverError, HandoverFormat, HandoverOptions, fret_requirements, hand_over};
 
 use super::handover::HandoverArgs;
 use super::{ExportArgs, ExportFormat};
 use crate::error::CliError;
-use crate::files;
+use crate::{files, out, say, scenario};
 
 /// Returns the options, or an error if one is out of range.
 fn options(given: &HandoverArgs) -> Result<HandoverOptions, CliError> {
@@ -36,7 +37,7 @@ impl ExportFormat {
     /// Returns the format of a whole run; `None` for a table.
     fn handover(self) -> Option<HandoverFormat> {
         match self {
-            Self::Csv | Self::Jsonl => None,
+            Self::Csv | Self::Jsonl | Self::Fret => None,
             Self::Aem => Some(HandoverFormat::Aem),
             Self::Oem => Some(HandoverFormat::Oem),
             Self::Glb => Some(HandoverFormat::Glb),
@@ -45,18 +46,39 @@ impl ExportFormat {
     }
 }
 
-/// Exports the run of a log; does nothing for the format of a table.
+/// Exports the run of a log, or the requirements of its scenario.
 pub fn run(args: &ExportArgs, format: ExportFormat) -> Result<(), CliError> {
-    let Some(format) = format.handover() else { return Ok(()) };
+    let Some(format) = format.handover() else { return requirements(args) };
     let options = options(&args.handover)?;
     if args.out.is_none() && format.is_binary() && io::stdout().is_terminal() {
         let why = "this format is not text\n\nhint: name a file with -o";
         return Err(CliError::Arguments(why.to_owned()));
     }
     let bytes = hand_over(&Log::open(&args.log)?, format, &options)?;
+    write(args, &bytes)
+}
+
+/// Exports the requirements of a scenario, or of that of a log.
+fn requirements(args: &ExportArgs) -> Result<(), CliError> {
+    args.handover.refuse()?;
+    let scenario = if out::ending(&args.log) == Some("toml") {
+        scenario::load(&args.log, &[], None)?
+    } else {
+        let log = Log::open(&args.log)?;
+        Scenario::parse_logged(&args.log.display().to_string(), log.require_scenario()?, &log)?
+    };
+    let found = fret_requirements(&scenario)?;
+    for (id, why) in &found.as_text {
+        say!("note: {id} is text alone: {why}");
+    }
+    write(args, found.json.as_bytes())
+}
+
+/// Writes to the file or to stdout.
+fn write(args: &ExportArgs, bytes: &[u8]) -> Result<(), CliError> {
     match &args.out {
-        Some(path) => files::write(path, &bytes, args.force),
-        None => io::stdout().lock().write_all(&bytes).map_err(CliError::Stdout),
+        Some(path) => files::write(path, bytes, args.force),
+        None => io::stdout().lock().write_all(bytes).map_err(CliError::Stdout),
     }
 }
 

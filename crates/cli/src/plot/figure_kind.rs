@@ -10,11 +10,11 @@ use super::run_events::RunEvents;
 use super::{
     accelerations, angle, consistency, deflection, drives, envelope, estimate, extra_loop, flywheel,
     frequency, gain, gimbals, hinges, line_of_sight, magnetorquers, modes, orbit, outputs, phase_plane,
-    pointing, three_axis, torque, torques,
+    pointing, requirement, three_axis, torque, torques,
 };
 
 /// The figures of logs, in the order in which they are listed and drawn.
-const LOG_FIGURES: [&FigureSpec; 28] = [
+const LOG_FIGURES: [&FigureSpec; 29] = [
     &phase_plane::SPEC,
     &torque::SPEC,
     &angle::SPEC,
@@ -43,6 +43,7 @@ const LOG_FIGURES: [&FigureSpec; 28] = [
     &estimate::SPEC,
     &consistency::SPEC,
     &extra_loop::SPEC,
+    &requirement::SPEC,
 ];
 
 /// Figure of a campaign.
@@ -108,11 +109,13 @@ impl FigureKind {
         LOG_FIGURES.into_iter().filter(|spec| (spec.is_in)(story)).map(Self::Log).collect()
     }
 
-    /// Returns the figures that are drawn if none is named: deflections in place of elastic energies.
+    /// Returns the figures that are drawn if none is named: deflections in place of elastic energies, and no requirements over
+    /// time, for which each run is repeated.
     pub fn usual_in(story: &RunEvents) -> Vec<Self> {
         let is_replaced = |kind: &Self| {
             let is_energy = kind.log_spec().is_some_and(|spec| spec.name == three_axis::ENERGY.name);
-            is_energy && (deflection::SPEC.is_in)(story) && !story.scenario.study.fires()
+            let is_judged = kind.log_spec().is_some_and(|spec| spec.name == requirement::SPEC.name);
+            is_judged || is_energy && (deflection::SPEC.is_in)(story) && !story.scenario.study.fires()
         };
         Self::all_in(story).into_iter().filter(|kind| !is_replaced(kind)).collect()
     }

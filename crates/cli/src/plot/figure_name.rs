@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 
 use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
 
-use super::FigureKind;
+use super::{FigureKind, requirement};
 
 /// Figure by its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,7 +13,12 @@ pub enum FigureName {
     Kind(FigureKind),
     /// Topic of a log, with its leading slash.
     Topic(String),
+    /// Figure of one requirement over time, by its identifier or name.
+    Requirement(String),
 }
+
+/// Prefix of the figure of one requirement.
+const OF_REQUIREMENT: &str = "requirement:";
 
 impl FigureName {
     /// Parses a name.
@@ -23,6 +28,9 @@ impl FigureName {
     pub fn parse(name: &str) -> Result<Self, String> {
         if name.starts_with('/') {
             return Ok(Self::Topic(name.to_owned()));
+        }
+        if let Some(own) = name.strip_prefix(OF_REQUIREMENT) {
+            return Ok(Self::Requirement(own.to_owned()));
         }
         clap::ValueEnum::from_str(name, false).map(Self::Kind)
     }
@@ -36,6 +44,7 @@ impl FigureName {
                 Self::Kind(kind) => kinds.push(*kind),
                 Self::Topic(topic) if !topics.contains(&topic.as_str()) => topics.push(topic.as_str()),
                 Self::Topic(_) => {}
+                Self::Requirement(_) => kinds.push(FigureKind::Log(&requirement::SPEC)),
             }
         }
         (kinds, topics)
@@ -56,7 +65,9 @@ impl TypedValueParser for FigureNameParser {
         value: &OsStr,
     ) -> Result<FigureName, clap::Error> {
         match value.to_str() {
-            Some(topic) if topic.starts_with('/') => Ok(FigureName::Topic(topic.to_owned())),
+            Some(name) if name.starts_with('/') || name.starts_with(OF_REQUIREMENT) => {
+                FigureName::parse(name).map_err(|_| clap::Error::new(clap::error::ErrorKind::InvalidValue))
+            }
             _ => {
                 EnumValueParser::<FigureKind>::new().parse_ref(command, argument, value).map(FigureName::Kind)
             }

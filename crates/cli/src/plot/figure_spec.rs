@@ -3,6 +3,7 @@
 use flexsc_figure::Figure;
 
 use super::cycle_data::{CycleData, RowSource};
+use super::judged_run::JudgedRun;
 use super::motion::MotionData;
 use super::run_events::RunEvents;
 
@@ -43,4 +44,6 @@ pub struct RunData<'a> {
     pub motion: &'a MotionData,
     /// Rows of three axes.
     pub cycles: &'a CycleData,
+    /// Signals and robustness of requirements over time.
+    pub judged: &'a JudgedRun,
 }

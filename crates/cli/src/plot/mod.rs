@@ -25,6 +25,7 @@ mod gimbals;
 mod hinges;
 mod identified_frequencies;
 mod interpolation;
+mod judged_run;
 mod line_of_sight;
 mod magnetorquers;
 mod manoeuvre_torque;
@@ -36,6 +37,7 @@ mod overlay;
 mod phase_plane;
 mod pointing;
 mod repeated_run;
+mod requirement;
 mod requirement_lines;
 mod run_events;
 mod running_mean;
@@ -65,6 +67,7 @@ pub use figure_kind::FigureKind;
 pub use figure_name::FigureName;
 use figure_name::FigureNameParser;
 use figure_spec::{FigureSpec, MotionPart, RunData};
+use judged_run::JudgedRun;
 use motion::MotionData;
 pub use overlay::overlaid;
 pub use run_events::RunEvents;
@@ -282,6 +285,11 @@ fn drawn_over(
     story.is_noted = source.is_noted;
     story.is_by_axis = is_by_axis;
     story.shown = time_range::resolve(from, to, story.end)?;
+    for name in asked {
+        if let FigureName::Requirement(name) = name {
+            story.requirements.push(requirement::index_of(&story, name)?);
+        }
+    }
     let usual = FigureKind::usual_in(&story);
     let wanted = if kinds.is_empty() { &usual } else { &kinds };
     let chosen = figure_kind::select(wanted, &FigureKind::all_in(&story)).map_err(|(missing, there)| {
@@ -317,7 +325,9 @@ fn drawn_over(
     } else {
         MotionData::default()
     };
-    let run = RunData { story: &story, motion: &motion, cycles: &cycles };
+    let is_judged = chosen.iter().any(|spec| spec.name == requirement::SPEC.name);
+    let judged = if is_judged { JudgedRun::read(&story, log, path)? } else { JudgedRun::default() };
+    let run = RunData { story: &story, motion: &motion, cycles: &cycles, judged: &judged };
     let drawn = chosen.into_iter().filter_map(|spec| {
         let figure = empty_panels::without_empty((spec.draw)(&run))?;
         let figure = story.shown.iter().fold(figure, time_range::crop);

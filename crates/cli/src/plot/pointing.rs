@@ -82,7 +82,7 @@ pub fn error_panel(story: &RunEvents, errors: &[Point], shown: Range<f64>) -> Pa
 }
 
 /// Returns the sizes that a logarithmic axis shows: without the smallest, and those far below the largest.
-fn usual(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
+pub fn usual(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let mut sizes: Vec<f64> = values.into_iter().filter(|size| *size > 0.0 && size.is_finite()).collect();
     sizes.sort_by(f64::total_cmp);
     let least = NOTHING.min(FAR_BELOW * sizes.last().copied().unwrap_or(0.0));

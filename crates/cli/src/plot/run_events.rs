@@ -27,6 +27,8 @@ pub struct RunEvents {
     pub is_noted: bool,
     /// True if the pointing error is shown about each axis.
     pub is_by_axis: bool,
+    /// Indices of the requirements over time that are shown; all if none is named.
+    pub requirements: Vec<usize>,
     /// Interval of time that figures show, if given.
     pub shown: Option<std::ops::Range<f64>>,
     /// Torque and gain at the start.
@@ -132,6 +134,7 @@ impl RunEvents {
             absent_parts,
             is_noted: false,
             is_by_axis: false,
+            requirements: Vec::new(),
             shown: None,
             start,
             switchings,

@@ -95,7 +95,7 @@ fn eclipses(cycles: &CycleData, end: f64) -> Vec<Interval> {
 
 /// Returns the intervals in which a wheel is at the limit of its speed, and at that of its torque (s).
 fn at_limits(run: &RunData<'_>) -> [Vec<Interval>; 2] {
-    let RunData { story, motion, cycles } = run;
+    let RunData { story, motion, cycles, .. } = run;
     let gap = SATURATION_GAP.min(GAP_SHARE * story.end);
     let is_at = |value: f64, limit: Option<f64>| limit.is_some_and(|limit| value.abs() >= AT_LIMIT * limit);
     if let Some(limit) = flywheel::speed_limit(story) {

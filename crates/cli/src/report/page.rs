@@ -56,7 +56,10 @@ pub fn html(review: &Review<'_>) -> String {
         |id, title: &str, html: String| blocks.push(PageBlock { id, title: title.to_owned(), html });
     if !answer.requirements.is_empty() {
         let table = requirement_block::table(answer, campaign_answer);
-        add("requirements", "Requirements", table + &command(&study.command("simulate", "")));
+        let drawn = run.drawn("requirement").map_or_else(String::new, |svg| {
+            picture(&svg, "Requirements over time: shaded while they count, with the instant that decides.")
+        });
+        add("requirements", "Requirements", table + &drawn + &command(&study.command("simulate", "")));
     }
     add("spacecraft", "Spacecraft", craft_block::block(study, Some(run)));
     add("time", "Time line", time_block(review));

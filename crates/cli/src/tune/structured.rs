@@ -12,6 +12,7 @@ use flexsc_core::analysis::structured_tuning::{
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::{ConfigError, is_number};
 use flexsc_core::formats::reader_units::{number, time};
+use flexsc_core::scenario::{AssessedRequirement, RequirementSource};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour};
 use serde_json::{Value as Json, json};
@@ -49,7 +50,7 @@ pub struct StructuredArgs {
     vary: Vec<VariedKey>,
     /// Quantity that is improved over all plants: `margin`, the least modulus margin; `settling`, the time after a step of
     /// the target in which the angles settle within 5 %; or the name of a [[requirement]], the rms of its pointing index
-    /// under the noise of the loop
+    /// under the noise of the loop, or with `holds` its value in a run
     #[arg(long, value_name = "QUANTITY", default_value = "margin", requires = "vary")]
     objective: TuningObjective,
     /// Limit that all plants keep: `margin>=VALUE`, `settling<=TIME`, or the name of a [[requirement]] with its own
@@ -267,7 +268,9 @@ impl StructuredResults {
             rows.push(row("margin".to_owned(), of, after >= least * (1.0 - LEAST_SHORTFALL), worst));
         }
         for measure in &report.measures {
-            let rms = if measure.unit == "s" { "" } else { " rms" };
+            let is_index = |own: &&AssessedRequirement| matches!(own.source, RequirementSource::Error(_));
+            let mut indices = self.scenario.study.requirements.iter().filter(is_index);
+            let rms = if indices.any(|own| own.name == measure.name) { " rms" } else { "" };
             let is_kept = measure.limit.is_none_or(|limit| measure.after <= limit * (1.0 + LEAST_SHORTFALL));
             rows.push(row(format!("{}{rms}", measure.name), json!(measure), is_kept, measure.worst_plant));
         }
@@ -282,7 +285,7 @@ impl StructuredResults {
 
     /// Prints what a search for margins alone may have cost, and keys that would go on beyond their ranges.
     fn print_warnings(&self, report: &TuningReport) {
-        if !report.measures.iter().any(|measure| measure.unit == "s")
+        if !report.measures.iter().any(|measure| measure.name == "settling")
             && let Some([before, after]) = self.found.settling()
         {
             let warning = if after > SLOWER * before { "! " } else { "" };

@@ -200,6 +200,16 @@ impl Expression {
         self.negated().always(window).negated()
     }
 
+    /// Returns the window and the expression of [`Self::eventually`].
+    pub fn as_eventually(&self) -> Option<(TimeWindow, &Self)> {
+        let Self::Not(always) = self else { return None };
+        let Self::Timed(timed) = &**always else { return None };
+        match &**timed {
+            Timed::Always(window, Self::Not(inner)) => Some((*window, inner)),
+            _ => None,
+        }
+    }
+
     /// Returns the expression with the opposite sense.
     #[must_use]
     pub fn negated(self) -> Self {

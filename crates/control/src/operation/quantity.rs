@@ -163,7 +163,7 @@ impl ModeQuantity {
     pub fn words(is_requirement: bool) -> impl Iterator<Item = String> {
         let known = QUANTITIES.iter().filter(move |(_, word, ..)| word.is_for(is_requirement));
         known.map(move |(word, of, ..)| match of {
-            Plain(quantity) if is_requirement && quantity.is_estimate() => format!("estimate.{word}"),
+            Plain(quantity) if is_requirement => quantity.word(),
             _ => (*word).to_owned(),
         })
     }
@@ -173,8 +173,8 @@ impl ModeQuantity {
         QUANTITIES.iter().flat_map(|(.., formula)| formula.vectors())
     }
 
-    /// Returns the unit, and the formula over what the control system knows.
-    fn declaration(self) -> (&'static str, ModeFormula) {
+    /// Returns the word, the unit, and the formula over what the control system knows.
+    fn declaration(self) -> (&'static str, &'static str, ModeFormula) {
         let argument = match self {
             Self::Silent(index)
             | Self::Elevation(index)
@@ -191,17 +191,23 @@ impl ModeQuantity {
             OfSensor(of) | OfMode(of) | OfLine(of) | OfFault(of) => of(argument) == self,
         };
         let found = QUANTITIES.iter().find(|(_, word, ..)| is_own(*word));
-        found.map_or(("", Single), |(.., unit, formula)| (*unit, *formula))
+        found.map_or(("", "", Single), |(word, _, unit, formula)| (*word, *unit, *formula))
+    }
+
+    /// Returns the word as requirements have it, without an argument.
+    pub fn word(self) -> String {
+        let word = self.declaration().0;
+        if self.is_estimate() { format!("estimate.{word}") } else { word.to_owned() }
     }
 
     /// Returns the unit.
     pub fn unit(self) -> &'static str {
-        self.declaration().0
+        self.declaration().1
     }
 
     /// Returns the formula over what the control system knows.
     pub fn formula(self) -> ModeFormula {
-        self.declaration().1
+        self.declaration().2
     }
 
     /// Returns true if the quantity is a boolean.

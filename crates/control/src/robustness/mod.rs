@@ -62,16 +62,16 @@ impl RequirementMonitor {
     /// Takes the pieces of each quantity between two times; they continue those before. A comparison with a value that is
     /// not known, NaN, does not hold.
     pub fn push(&mut self, pieces: &[&[SignalPiece]]) {
-        let scaled = |(source, (of, leaf)): (usize, (&&[SignalPiece], &Leaf))| -> Vec<SignalPiece> {
+        let scaled = |(of, leaf): (&&[SignalPiece], &Leaf)| -> Vec<SignalPiece> {
             let scaled = |piece: &SignalPiece| {
                 if piece.at(piece.from).value.is_nan() {
-                    return SignalPiece::constant(piece.from, piece.to, f64::NEG_INFINITY, source);
+                    return SignalPiece::constant(piece.from, piece.to, f64::NEG_INFINITY);
                 }
-                SignalPiece { source, ..piece.clone().scaled(leaf.gain, leaf.offset) }
+                piece.clone().scaled(leaf.gain, leaf.offset)
             };
             of.iter().map(scaled).collect()
         };
-        let leaves: Vec<Vec<SignalPiece>> = pieces.iter().zip(&self.leaves).enumerate().map(scaled).collect();
+        let leaves: Vec<Vec<SignalPiece>> = pieces.iter().zip(&self.leaves).map(scaled).collect();
         self.point.push(Chunk::Known(&leaves));
     }
 

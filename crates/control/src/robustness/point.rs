@@ -61,7 +61,7 @@ pub(super) struct EventRobustness {
 }
 
 /// Value of nothing: larger than all.
-const NONE: Witnessed = Witnessed { value: f64::INFINITY, at: f64::NAN, source: 0 };
+const NONE: Witnessed = Witnessed { value: f64::INFINITY, at: f64::NAN };
 
 impl PointRobustness {
     /// Creates the robustness at an instant of a run with an end (s); `source` is the number of its first comparison, and then

@@ -102,7 +102,7 @@ impl RobustnessSignal {
                     let from = at.next_up().max(*start);
                     into.extend(last.take().filter(|_| *start <= at).map(|piece| piece.part(at, from)));
                     let value = if *is_negated { -sign } else { sign };
-                    into.push(SignalPiece::constant(from, f64::INFINITY, value, *source));
+                    into.push(SignalPiece::constant(from, f64::INFINITY, value));
                 }
             },
             Self::Not(inner) => {

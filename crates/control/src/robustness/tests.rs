@@ -40,7 +40,7 @@ fn wave(from: f64, is_rate: bool) -> SignalPiece {
     let polynomial = if is_rate { polynomial.derivative().scaled(1.0 / STEP) } else { polynomial };
     let curve = Arc::new(Curve { begin: from, length: STEP, polynomial });
     let shape = PieceValues::Curve { curve, gain: 1.0, offset: 0.0, ahead: 0.0 };
-    SignalPiece { from, to: from + STEP, shape, source: 0 }
+    SignalPiece { from, to: from + STEP, shape }
 }
 
 /// Returns the pieces of a quantity: the size of the wave or of its rate, or whether a mode is active.
@@ -51,7 +51,7 @@ fn pieces(quantity: ModeQuantity, from: f64, mode: &dyn Fn(f64) -> usize) -> Vec
         ModeQuantity::TrueRate => wave(from, true).push_magnitude(&mut all),
         ModeQuantity::Mode(index) => {
             let value = f64::from(u8::from(mode(from) == index));
-            all.push(SignalPiece::constant(from, from + STEP, value, 0));
+            all.push(SignalPiece::constant(from, from + STEP, value));
         }
         other => panic!("{other:?}"),
     }

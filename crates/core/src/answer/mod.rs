@@ -47,7 +47,7 @@ pub use fault_answer::{FaultAnswer, FaultRequirement, LeastRobust};
 pub use key_difference::KeyDifference;
 pub use lines::Line;
 pub use mode_answer::ModeAnswer;
-pub use requirement_answer::{LargestValue, RequirementAnswer, RequirementText};
+pub use requirement_answer::{LargestValue, RequirementAnswer, RequirementText, requirement_id};
 pub use run_comparison::RunComparison;
 pub use run_observer::{Observed, RunObserver};
 pub use screen::{ScreenOptions, ScreenStyle};

@@ -245,7 +245,7 @@ impl RequirementMetrics {
                     (values.largest.finish(), share)
                 }
                 ValueSource::Formula(found, scale) => {
-                    let (robustness, at) = found.map_or((None, f64::NAN), |own| (decided(&own), own.at));
+                    let (robustness, at) = found.map_or((None, f64::NAN), |own| (own.decided(), own.at));
                     match robustness {
                         Some(f64::INFINITY) => (f64::NAN, 1.0),
                         Some(robustness) => {
@@ -272,12 +272,6 @@ impl RequirementMetrics {
         }
         all
     }
-}
-
-/// Returns the robustness that decides, infinite if no part of the run was to meet anything; `None` if what follows the run
-/// decides.
-fn decided(own: &RequirementRobustness) -> Option<f64> {
-    if own.least >= 0.0 { Some(own.least) } else { Some(own.largest).filter(|largest| *largest < 0.0) }
 }
 
 /// True if, by its value and share, nothing in a run was to meet a requirement.

@@ -6,6 +6,8 @@ use crate::polynomial::Polynomial;
 
 /// Part of a value by which rounding of a time may change one that is equal.
 const TIE: f64 = 1e-12;
+/// Number of straight lines that follow a curve between two turns.
+const PARTS: u32 = 4;
 
 /// Polynomial over a part of the time.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,8 +52,6 @@ pub struct SignalPiece {
     pub to: f64,
     /// Values.
     pub shape: PieceValues,
-    /// Number of the observed signal.
-    pub source: usize,
 }
 
 /// Value with its origin.
@@ -61,26 +61,19 @@ pub struct Witnessed {
     pub value: f64,
     /// Time (s) at which the observed signal has it.
     pub at: f64,
-    /// Number of the observed signal.
-    pub source: usize,
 }
 
 impl Witnessed {
     /// Returns the value as a piece between two times (s).
     pub fn piece(&self, from: f64, to: f64) -> SignalPiece {
-        SignalPiece {
-            from,
-            to,
-            shape: PieceValues::Constant { value: self.value, at: self.at },
-            source: self.source,
-        }
+        SignalPiece { from, to, shape: PieceValues::Constant { value: self.value, at: self.at } }
     }
 }
 
 impl SignalPiece {
     /// Creates a constant piece of an observed signal.
-    pub fn constant(from: f64, to: f64, value: f64, source: usize) -> Self {
-        Self { from, to, shape: PieceValues::Constant { value, at: from }, source }
+    pub fn constant(from: f64, to: f64, value: f64) -> Self {
+        Self { from, to, shape: PieceValues::Constant { value, at: from } }
     }
 
     /// Returns the value at a time, its end included, with the time at which the observed signal has it.
@@ -92,7 +85,7 @@ impl SignalPiece {
                 (offset + gain * curve.polynomial.at(s), t + ahead)
             }
         };
-        Witnessed { value, at, source: self.source }
+        Witnessed { value, at }
     }
 
     /// Returns `factor` times the piece plus `shift`.
@@ -168,7 +161,7 @@ impl SignalPiece {
             return None;
         }
         let (depth, s) = self.polynomial(from, to)?.negative().peak(tie - most)?;
-        Some(Witnessed { value: -depth, at: from + (to - from) * s + ahead, source: self.source })
+        Some(Witnessed { value: -depth, at: from + (to - from) * s + ahead })
     }
 
     /// Appends the parts of the piece on which it only rises or only falls.
@@ -194,9 +187,37 @@ impl SignalPiece {
         let sign = |part: Self| {
             let is_positive = part.at(0.5 * (part.from + part.to.min(f64::MAX))).value >= 0.0;
             let value = if is_positive { f64::INFINITY } else { f64::NEG_INFINITY };
-            Self::constant(part.from, part.to, value, part.source)
+            Self::constant(part.from, part.to, value)
         };
         self.push_parts(&self.zeros(), sign, into);
+    }
+
+    /// Appends points through which straight lines follow the piece: its ends, and of a curve parts of equal length and turns.
+    pub fn push_points(&self, into: &mut Vec<(f64, f64)>) {
+        let mut push = |at: f64| {
+            let point = (at, self.at(at).value);
+            match into[..] {
+                // A constant goes on.
+                [.., (_, before), (last, value)] if before == value && value == point.1 && last <= at => {
+                    into.pop();
+                }
+                _ => {}
+            }
+            if into.last() != Some(&point) {
+                into.push(point);
+            }
+        };
+        if let PieceValues::Constant { .. } = self.shape {
+            push(self.from);
+            push(self.to);
+            return;
+        }
+        let mut parts = Vec::new();
+        self.push_monotone(&mut parts);
+        for Self { from, to, .. } in parts {
+            (0..PARTS).for_each(|part| push(from + (to - from) * f64::from(part) / f64::from(PARTS)));
+            push(to);
+        }
     }
 
     /// Returns the points of the elapsed fraction at which the piece changes its sign; none of a constant.
@@ -250,7 +271,7 @@ impl SignalPiece {
     fn continues_as(&self, next: &Self) -> bool {
         match (&self.shape, &next.shape) {
             (PieceValues::Constant { value, .. }, PieceValues::Constant { value: other, .. }) => {
-                value == other && self.source == next.source
+                value == other
             }
             (PieceValues::Curve { curve, .. }, PieceValues::Curve { curve: other, .. }) => {
                 Arc::ptr_eq(curve, other) && self.shape == next.shape

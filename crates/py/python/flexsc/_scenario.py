@@ -636,7 +636,8 @@ class Scenario:
             ranges: The least and the largest value of each key, such as `{"law.pd.k_d": (10.0, 400.0)}`.
             objective: `"margin"`, the least modulus margin of all signals together, is maximised.
                 `"settling"`, the time after a step of the target in which the angles settle within 5 %, is
-                minimised, and so is the rms of the pointing index of the `[[requirement]]` of another name.
+                minimised, and so is the rms of the pointing index of the `[[requirement]]` of another name,
+                or the value in a run of one over time.
             keep: Limits that all plants keep: `"margin>=0.5"`, `"settling<=60"` (s), or the name of a
                 `[[requirement]]` with its own limit.
             loop: The point at which the loops are opened.

@@ -15,7 +15,9 @@ use flexsc_numerics::polynomial::{Polynomial, TERMS};
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::signal::{Curve, PieceValues, SignalPiece, fit};
 use flexsc_numerics::time::Instant;
-use flexsc_record::{Record, RecordError, Report, RequirementRobustness, RobustnessOfRequirements, Sample};
+use flexsc_record::{
+    Record, RecordError, Report, RequirementRobustness, RequirementSignals, RobustnessOfRequirements, Sample,
+};
 
 use super::guidance::Guidance;
 use super::loads::Loads;
@@ -29,7 +31,7 @@ use flexsc_scenario::{RequirementSource, Scenario};
 /// Longest part (s) over which a quantity of the sky is fitted.
 const SKY_REACH: f64 = 20.0;
 /// Part of a limit to which quantities are fitted, and the least tolerance, by rounding.
-const TOLERANCE: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-9;
 const ROUNDING: f64 = 4e-15;
 
 /// Requirements over time of a run.
@@ -47,11 +49,15 @@ pub struct RequirementMonitors {
     slew_acceleration: f64,
     /// True if nothing that turns in the body, or moves on it, changes its torque by itself.
     is_steady: bool,
+    /// True if the motion has bounds: no appendage is on a drive or hinge, and no rotor has imbalance.
+    is_bounded: bool,
     /// Start of the motion segment; of three axes also the values there, and the body with its reference unless the body can
     /// return to it.
     since: Instant,
     start: Option<SegmentEnd>,
     copy: Option<Box<(Plant, Guidance)>>,
+    /// Points of the signals of the quantities, for a record that wants them.
+    kept: Option<Vec<Vec<(f64, f64)>>>,
 }
 
 /// Values at an end of a segment about three axes.
@@ -63,7 +69,7 @@ struct SegmentEnd {
     turning: f64,
     /// Size of the acceleration of the reference (rad/s²).
     reference: f64,
-    /// Bounds of the acceleration (rad/s²) by loads, without and with their effect on the modes.
+    /// Bounds of the acceleration (rad/s²) by loads, without and with the forces on the modes.
     growth: [f64; 2],
     /// Bound of the acceleration (rad/s²) of the hub by free vibrations, and the highest frequency (rad/s).
     oscillation: f64,
@@ -104,7 +110,10 @@ impl RequirementMonitors {
             let of_targets = scenario.targets().iter().filter_map(|target| target.acceleration);
             all.is_steady = scenario.study.bearings.is_empty()
                 && body.articulation.is_none()
-                && body.disturbance.is_none();
+                && body.disturbance.is_none()
+                && scenario.appendage.iter().all(|appendage| appendage.thermal.is_none());
+            let is_balanced = scenario.study.bearings.iter().all(|bearing| bearing.lines.is_empty());
+            all.is_bounded = is_balanced && body.articulation.is_none();
             all.slew_acceleration = of_modes.chain(of_targets).map(Positive::get).fold(0.0, f64::max);
         }
         all
@@ -126,6 +135,11 @@ impl RequirementMonitors {
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.monitors.is_empty()
+    }
+
+    /// Keeps the signals from now on, for the record at the end of the run.
+    pub fn keep_signals(&mut self) {
+        self.kept = Some(vec![Vec::new(); self.quantities.len()]);
     }
 
     /// Takes the values of the quantities that change at instants, at one of them: of those that are measured or estimated only
@@ -172,6 +186,11 @@ impl RequirementMonitors {
                 }
             }
         }
+        if self.kept.is_some() {
+            self.quantities
+                .iter_mut()
+                .for_each(|observed| observed.counts = observed.quantity.is_of_motion());
+        }
         if self.quantities.iter().any(|observed| observed.counts) {
             self.start = Some(self.at_end(run.plant, run.guidance, run.loads, run.now));
             if !self.is_steady || motion.two_way().is_none() {
@@ -198,7 +217,7 @@ impl RequirementMonitors {
                 let is_flag = quantity.is_boolean();
                 if is_flag || edges.is_empty() && sky.is_steady(*quantity, from) {
                     let constant =
-                        |[from, to]: [f64; 2]| SignalPiece::constant(from, to, sky.value(*quantity, from), 0);
+                        |[from, to]: [f64; 2]| SignalPiece::constant(from, to, sky.value(*quantity, from));
                     into.extend(parts([from, to], f64::INFINITY, edges).into_iter().map(constant));
                     continue;
                 }
@@ -224,6 +243,9 @@ impl RequirementMonitors {
             join(into, [from, to]);
         }
         self.add_motion(span, (plant, guidance, loads), &mut pieces);
+        for (pieces, points) in pieces.iter().zip(self.kept.iter_mut().flatten()) {
+            pieces.iter().for_each(|piece| piece.push_points(points));
+        }
         for (_, monitor, places) in &mut self.monitors {
             let read: Vec<&[SignalPiece]> = places.iter().map(|place| &pieces[*place][..]).collect();
             monitor.push(&read);
@@ -246,6 +268,11 @@ impl RequirementMonitors {
             }
         };
         let mut report = Report::new();
+        if let Some(signals) = self.kept.take() {
+            let of_requirements =
+                self.monitors.iter().map(|(requirement, _, places)| (*requirement, places.clone())).collect();
+            report.add_value(RequirementSignals { signals, of_requirements });
+        }
         report.add_value(RobustnessOfRequirements(
             std::mem::take(&mut self.monitors).into_iter().map(judged).collect(),
         ));
@@ -271,7 +298,7 @@ fn parts([from, to]: [f64; 2], longest: f64, edges: &[f64]) -> Vec<[f64; 2]> {
 fn curve(begin: f64, length: f64, polynomial: Polynomial) -> Option<SignalPiece> {
     let curve = Arc::new(Curve { begin, length, polynomial });
     let shape = PieceValues::Curve { curve, gain: 1.0, offset: 0.0, ahead: 0.0 };
-    (length > 0.0).then_some(SignalPiece { from: begin, to: begin + length, shape, source: 0 })
+    (length > 0.0).then_some(SignalPiece { from: begin, to: begin + length, shape })
 }
 
 /// Returns the piece of a value that is constant or, if it `grows`, a time; none without length.
@@ -281,7 +308,7 @@ fn held_value([from, to]: [f64; 2], value: f64, grows: bool) -> Option<SignalPie
         (terms[0], terms[1]) = (value, to - from);
         return curve(from, to - from, Polynomial::new(terms));
     }
-    (to > from).then(|| SignalPiece::constant(from, to, value, 0))
+    (to > from).then(|| SignalPiece::constant(from, to, value))
 }
 
 /// Closes gaps by rounding between pieces, from the start of a segment to its end.

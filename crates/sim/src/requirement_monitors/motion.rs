@@ -48,7 +48,7 @@ impl RequirementMonitors {
         let (start, copy) = (self.start.take(), self.copy.take());
         let jumps = guidance.next_target(span[0]).is_some_and(|next| next <= span[1]);
         let is_free = jumps || guidance.has_unlimited_acceleration(span[0]);
-        if let Some(start) = start.as_ref().filter(|_| !is_ignored && !is_free) {
+        if let Some(start) = start.as_ref().filter(|_| !is_ignored && !is_free && self.is_bounded) {
             let end = self.at_end(plant, guidance, loads, span[1]);
             for (number, range) in ranges.iter_mut().enumerate() {
                 if is_bounded(&self.quantities[number]) {
@@ -57,11 +57,12 @@ impl RequirementMonitors {
             }
             is_ignored = self.ignore(to, &ranges);
         }
-        if is_ignored {
+        let is_one_axis = plant.quantities().one_axis().is_some();
+        if is_ignored && !(is_one_axis && self.kept.is_some()) {
             for number in 0..ranges.len() {
-                self.add_any(number, ranges[number], [from, to], pieces);
+                self.add_any(number, start.as_ref(), [from, to], pieces);
             }
-        } else if plant.quantities().one_axis().is_some() {
+        } else if is_one_axis {
             self.add_one_axis(span, (plant, guidance, &loads.applied), pieces);
         } else if start.is_some() {
             let of_copy = copy.map(|copy| *copy);
@@ -69,7 +70,7 @@ impl RequirementMonitors {
                 of_copy.as_ref().map_or((plant, guidance), |(base, guidance)| (base, guidance));
             self.add_three_axis(span, (base.clone(), guidance), plant, pieces);
             for number in (0..ranges.len()).filter(|number| !self.quantities[*number].counts) {
-                self.add_any(number, ranges[number], [from, to], pieces);
+                self.add_any(number, start.as_ref(), [from, to], pieces);
             }
         }
         for pieces in pieces {
@@ -90,17 +91,17 @@ impl RequirementMonitors {
         })
     }
 
-    /// Adds a value of a quantity of the motion that changes no result while it stays within its range.
+    /// Adds a value of a quantity of the motion that is within its range: that at the start of the segment, if it is known.
     fn add_any(
         &self,
         number: usize,
-        [low, high]: [f64; 2],
+        start: Option<&SegmentEnd>,
         [from, to]: [f64; 2],
         pieces: &mut [Vec<SignalPiece>],
     ) {
         if self.quantities[number].quantity.is_of_motion() {
-            let value = if high.is_finite() { f64::midpoint(low, high) } else { low };
-            pieces[number].push(SignalPiece::constant(from, to, value, 0));
+            let value = start.map_or(0.0, |start| start.errors[number].norm());
+            pieces[number].push(SignalPiece::constant(from, to, value));
         }
     }
 
@@ -113,12 +114,14 @@ impl RequirementMonitors {
         now: Instant,
     ) -> SegmentEnd {
         let error = |observed: &Observed| {
-            if is_bounded(observed) { self.error(observed.quantity, plant, guidance, now) } else { [0.0; 3] }
+            if observed.counts { self.error(observed.quantity, plant, guidance, now) } else { [0.0; 3] }
         };
         let torque = loads.torque_bound();
         let elastic = MotionLimits::elastic_rate(plant, self.hub_rotation);
         let mut growth = [0.0, self.hub_rotation].map(|rotation| self.limits.growth(plant, rotation, torque));
-        growth[1] += self.hub_rotation * loads.modal_force_bound();
+        let is_light_steady = self.sky.is_steady(ModeQuantity::TrueSunlight, now.seconds());
+        let heated = MotionLimits::thermal_force(plant, now, is_light_steady);
+        growth[1] += self.hub_rotation * (loads.modal_force_bound() + heated);
         let fastest = plant.fastest_frequency();
         let oscillation = fastest * elastic;
         let turns =
