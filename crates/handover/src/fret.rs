@@ -1,7 +1,7 @@
 //! Requirements over time for FRET of NASA, whose sentences Ogma and Copilot turn into monitors in flight.
 //!
-//! A sentence has a scope, a trigger, a component, a time and a condition. FRET
-//! reads its meaning from the text when the file is imported; text in quotes has none.
+//! A sentence has a scope, a trigger, a component, a time and a condition. FRET reads its meaning from the text when the file is
+//! imported; text in quotes has none.
 
 use std::collections::BTreeMap;
 
