@@ -85,7 +85,7 @@ fn other_endings_are_refused_and_nothing_is_made() {
         ("plot relay-fixed.mcap -o f.jpg", ".svg, .png or .pdf"),
         ("layout relay-fixed.toml -o lay", "must end in .json"),
         ("log recover relay-fixed.mcap -o rec", "must end in .mcap"),
-        ("export relay-fixed.mcap --topic /command -o c", ".glb or .bin"),
+        ("export relay-fixed.mcap --topic /command -o c", ".glb, .bin or .json"),
         ("export relay-fixed.mcap --topic /command --format csv -o c.jsonl", "--format"),
         ("export relay-fixed.mcap -o all.csv", "--topic"),
         (

@@ -244,7 +244,9 @@ impl RequirementMonitors {
         }
         self.add_motion(span, (plant, guidance, loads), &mut pieces);
         for (pieces, points) in pieces.iter().zip(self.kept.iter_mut().flatten()) {
-            pieces.iter().for_each(|piece| piece.push_points(points));
+            for piece in pieces {
+                piece.push_points(points);
+            }
         }
         for (_, monitor, places) in &mut self.monitors {
             let read: Vec<&[SignalPiece]> = places.iter().map(|place| &pieces[*place][..]).collect();
