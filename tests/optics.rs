@@ -74,7 +74,7 @@ period = 0.1
 bandwidth = 1.0
 [actuator.wheels]
 arrangement = "orthogonal"
-inertia = 1e-3
+inertia = 1e-7
 torque = 0.01
 "#;
 

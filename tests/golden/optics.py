@@ -20,7 +20,9 @@ def rigid(at):
 
 MODES = 2 * np.pi * np.array([62.0, 88.0, 140.0])
 DAMPING = np.array([0.004, 0.004, 0.005])
-SHAPES = np.array([[3.1, 0, 0, 0, 1.10, 0], [0, 2.9, 0.2, -1.02, 0, 0.03], [0.2, -0.1, 2.6, 0.04, 0.01, 0.15]])
+SHAPES = np.array(
+    [[3.1, 0, 0, 0, 1.10, 0], [0, 2.9, 0.2, -1.02, 0, 0.03], [0.2, -0.1, 2.6, 0.04, 0.01, 0.15]]
+)
 JOINT = np.array([0, 0, 0.35])
 WHEEL = np.array([0.12, -0.05, -0.18])
 # Place from the joint, translations, rotations by mode, and rows of rotation and translation about x and y.
@@ -60,7 +62,7 @@ def answers(hertz):
     w, hub = 2 * np.pi * hertz, np.diag([4.2, 3.9, 4.8])
     m, d, k = (np.zeros((9, 9)) for _ in range(3))
     m[:6, :6] = mass(62.0, hub, np.zeros(3)) + mass(0.95, np.diag([9e-4, 1.6e-3, 9e-4]), WHEEL)
-    m[:6, :6] += mass(18.0, np.diag([0.92, 0.92, 0.31]), JOINT + [0, 0, 0.30])
+    m[:6, :6] += mass(18.0, np.diag([0.92, 0.92, 0.31]), JOINT + np.array([0, 0, 0.30]))
     m[6:, :6] = SHAPES @ rigid(JOINT)
     m[:6, 6:] = m[6:, :6].T
     m[6:, 6:] = np.eye(3)

@@ -132,6 +132,7 @@ __all__ = [
     "ObserverFormKind",
     "Open",
     "OperatingMode",
+    "OpticalElement",
     "Orbit",
     "Outlier",
     "Output",
@@ -2269,6 +2270,8 @@ class LineOfSight(Part):
         period: Period of its samples (s).
         axis: Direction of the line of sight, of any length, in the body's axes with the structure
             undeformed.
+        optics: Mirrors, lenses and detectors whose motions add up to that of the line of sight, along an
+            axis of the body; default: it turns with `point`.
         window: Start and end (s) of the interval in which it is assessed; default: the whole run.
         jitter_window: Length (s) of the windows within which jitter is assessed, such as an exposure time:
             the deviation from the mean over each window. Default: no jitter is assessed.
@@ -2280,6 +2283,10 @@ class LineOfSight(Part):
     """Period of its samples (s)."""
     axis: Vector = DEFAULT
     """Direction of the line of sight, of any length, in the body's axes with the structure undeformed."""
+    optics: Sequence[OpticalElement] = DEFAULT
+    """Mirrors, lenses and detectors whose motions add up to that of the line of sight, along an axis of the
+    body; default: it turns with `point`.
+    """
     window: Vector = DEFAULT
     """Start and end (s) of the interval in which it is assessed; default: the whole run."""
     jitter_window: float = DEFAULT
@@ -2818,6 +2825,28 @@ class OperatingMode(Part):
     """
     leave: Sequence[ModeExit] = DEFAULT
     """Ends of the mode: the first whose condition is met ends it."""
+
+
+class OpticalElement(Part):
+    """Mirror, lens or detector at a point of the structure. The two rows of each matrix are the rotations
+    of the line of sight about the body axes across it, in cyclic order: about x and y for a line along
+    z.
+
+    Args:
+        point: Point of the structure at which it is mounted.
+        rotation: Rotation of the line of sight per rotation of the point, about x, y and z (rad/rad).
+        translation: Rotation of the line of sight per displacement of the point, along x, y and z (rad/m);
+            the sum over all optics is zero.
+    """
+
+    point: str
+    """Point of the structure at which it is mounted."""
+    rotation: Rows = DEFAULT
+    """Rotation of the line of sight per rotation of the point, about x, y and z (rad/rad)."""
+    translation: Rows = DEFAULT
+    """Rotation of the line of sight per displacement of the point, along x, y and z (rad/m); the sum over
+    all optics is zero.
+    """
 
 
 class Orbit(Part, kw_only=False):
