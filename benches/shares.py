@@ -29,7 +29,10 @@ def profile(command, scenario, seconds):
     with tempfile.NamedTemporaryFile() as out:
         run = [command, "simulate", scenario, "--set", f"duration={seconds}", "--log", "none"]
         valgrind = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out.name}"]
-        subprocess.run([*valgrind, *run], capture_output=True)
+        done = subprocess.run([*valgrind, *run], capture_output=True, text=True)
+        # 3: a requirement is not met.
+        if done.returncode not in (0, 3):
+            raise SystemExit(f"{command} {scenario}: {done.stderr}")
         lines = Path(out.name).read_text().splitlines()
     for line in lines:
         if found := re.match(r"(c?fn)=\((\d+)\)(?: (.*))?", line):

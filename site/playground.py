@@ -163,6 +163,15 @@ def bundle() -> None:
     subprocess.run(["node", "bundle.mjs", NEW], cwd=PACKAGES, check=True)
 
 
+def packed(data: bytes) -> bytes:
+    """Data as a gzip file, 4 % smaller where `zopfli` is installed."""
+    try:
+        from zopfli.gzip import compress
+    except ImportError:
+        return gzip.compress(data, 9, mtime=0)
+    return compress(data, numiterations=1)
+
+
 def is_built() -> bool:
     """True if the playground has been built."""
     return MADE.is_dir()
@@ -177,10 +186,10 @@ def build() -> str | None:
     model = NEW / "model.js"
     try:
         bundle()
-        packed = gzip.compress(engine(), 9, mtime=0)
+        module = packed(engine())
     except Absent as absent:
         return str(absent)
-    files = {"engine.wasm": packed, "model.js": gzip.compress(model.read_bytes(), 9, mtime=0)}
+    files = {"engine.wasm": module, "model.js": packed(model.read_bytes())}
     for name, data in files.items():
         (NEW / f"{name}.gz").write_bytes(data)
         text = base64.b64encode(data).decode("ascii")

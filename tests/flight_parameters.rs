@@ -93,3 +93,23 @@ fn parameters_beyond_their_limits_are_refused_by_number() {
     let (_, said) = replay(&dir, "main.c", "");
     assert_eq!(said, "0 1 1 1\n");
 }
+
+#[test]
+fn ends_of_a_mode_with_one_target_have_parameters_of_their_own() {
+    if !is_installed("gcc") {
+        return;
+    }
+    let dir = Dir::with(&["cubesat-day"]);
+    let one = r#"{ to = "safe", when = "silent(star_tracker) > 2400" }"#;
+    let two = format!(r#"{one}, {{ to = "safe", when = "rate > 0.2" }}"#);
+    let text = dir.text("cubesat-day.toml");
+    assert!(text.contains(one));
+    dir.write("cubesat-day.toml", text.replace(one, &two));
+    dir.run("export-c cubesat-day.toml -o out --name sat --calls 10").exits(0);
+    let program = "#include \"sat.h\"\n#include <stdio.h>\nint main(void)\n{\n    \
+        const sat_parameters p = sat_default_parameters;\n    \
+        printf(\"%g %g\\n\", p.point_to_safe_0, p.point_to_safe_1);\n    return 0;\n}\n";
+    dir.write("main.c", program);
+    let (_, said) = replay(&dir, "main.c", "");
+    assert_eq!(said, "2400 0.2\n");
+}

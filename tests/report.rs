@@ -205,6 +205,7 @@ fn what_has_no_numbers_has_a_reason() {
         ("-o other.html --runs 1000000", "1000000 is not in 0..=100000"),
         ("-o other.html --set law.relay.k=1", "unknown key"),
         ("-o other.html --runs 3 --watch", "--watch"),
+        ("-o other.html --runs 0 --campaign made", "leaves the campaign out"),
         ("", "--out"),
     ] {
         dir.run(&format!("report relay-fixed.toml {arguments}")).exits(2).says(&[told]);

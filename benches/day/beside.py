@@ -55,8 +55,8 @@ def flexsc(duration, *settings, wings=False):
 
         def rows(topic, *columns):
             command = [FLEXSC, "export", place / "day.mcap", "--topic", topic]
-            told = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-            return [[float(row[column]) for column in columns] for row in csv.DictReader(io.StringIO(told))]
+            table = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+            return [[float(row[column]) for column in columns] for row in csv.DictReader(io.StringIO(table))]
 
         return {
             "cpu_s": cpu,
@@ -71,7 +71,8 @@ def script(name, *arguments):
     command = [sys.executable, HERE / name, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
-        print(f"{name} {' '.join(command[2:])}: {done.stderr.splitlines()[-1]}", file=sys.stderr)
+        why = (done.stderr.splitlines() or [f"exit code {done.returncode}"])[-1]
+        print(f"{name} {' '.join(command[2:])}: {why}", file=sys.stderr)
         return None
     return json.loads(done.stdout.splitlines()[-1])
 
@@ -90,6 +91,9 @@ def apart(one, other):
     def turn(p, q):
         sign = 1 if sum(a * b for a, b in zip(p, q, strict=True)) > 0 else -1
         return 2 * sqrt(sum((a - sign * b) ** 2 for a, b in zip(p, q, strict=True)))
+
+    if abs(len(one["attitude"]) - len(other["attitude"])) > 1:
+        raise SystemExit(f"{len(one['attitude'])} rows beside {len(other['attitude'])}")
 
     def largest(name, by):
         return max(by(a, b) for a, b in zip(one[name], other[name], strict=False))
@@ -138,8 +142,8 @@ def table():
     lines = ["| a day of a CubeSat | CPU time | ratio |", "|---|---|---|"]
     for name, times in found.items():
         whole = min(found["flexsc, panels" if "panels" in name else "flexsc"])
-        told = (f"{min(times):.2g} s", f"{min(times) / whole:.2g}") if times else ("not there", "")
-        lines.append(f"| {name} | {told[0]} | {told[1]} |")
+        cells = (f"{min(times):.2g} s", f"{min(times) / whole:.2g}") if times else ("not there", "")
+        lines.append(f"| {name} | {cells[0]} | {cells[1]} |")
     return "\n".join([*lines, "", *apart_by]) + "\n"
 
 

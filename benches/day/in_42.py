@@ -66,7 +66,7 @@ def write(home, place, duration, step, drag):
     """Writes a directory like that of 42 with the input files."""
     case, shipped = place / "Day", home / "InOut"
     for part in home.iterdir():
-        if part.name != "Model":
+        if part.name not in ("Model", case.name):
             (place / part.name).symlink_to(part)
     shutil.copytree(shipped, case)
     (place / "Model").mkdir()

@@ -34,7 +34,7 @@ from scenario_classes import docstring
 
 FILE = Path(__file__).parent / "python" / "flexsc" / "results.py"
 WIDTH = 108
-# Of those that are not of SI, names keep the unit: a frequency without one is in rad/s.
+# Units that names of fields leave out. Hz stays, as a frequency without a unit is in rad/s.
 UNITS = ("_rad_s", "_rad", "_nm_s", "_nm", "_s")
 # Classes with methods, by hand.
 BASES = {

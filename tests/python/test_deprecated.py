@@ -50,7 +50,7 @@ def test_members_and_keywords_have_their_old_names() -> None:
         flexsc.identity  # type: ignore[attr-defined]  # noqa: B018
 
 
-def test_every_old_name_is_tested_and_told_to_users() -> None:
+def test_every_old_name_is_in_the_documentation() -> None:
     text = (ROOT / "docs/python.md").read_text("utf-8")
     for old, new in RENAMED.items():
         if "papers" not in new:

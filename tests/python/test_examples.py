@@ -46,7 +46,6 @@ def names_of(module: ModuleType) -> dict[str, Any]:
     return {name: thing for name, thing in public.items() if callable(thing)}
 
 
-MODULES = ("papers", "parts", "structure", "plot", "gym", "dask")
 # The classes of scenarios have their keys, whose texts are those of the schema.
 PUBLIC = {
     f"{module.__name__}.{name}": thing

@@ -45,6 +45,8 @@ def test_keys_have_ranges_values_and_errors() -> None:
         (["law.attitude.width"], KeyError, "width"),
         (["law"], ValueError, "law"),
         ({"seed": (3, 3)}, ValueError, "must be"),
+        ({"seed": (3, 4, 5)}, ValueError, "must be"),
+        ({"seed": []}, ValueError, "must be"),
         (["spacecraft.rate[0]"], ValueError, "its range must be given"),
     ]:
         with pytest.raises(error, match=text):

@@ -272,6 +272,15 @@ def texts(figure: Any) -> list[str]:
     return [figure.get_suptitle(), *(axes.get_ylabel() for axes in figure.axes)]
 
 
+class Off(flexsc.Law):
+    """A law that does nothing."""
+
+    period = 1.0
+
+    def decide(self, event: flexsc.parts.Event) -> float:
+        return 0.0
+
+
 def test_progress_is_a_line_or_a_function(
     fixed: Scenario, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -290,6 +299,8 @@ def test_progress_is_a_line_or_a_function(
     flexsc.campaign(short, 2)
     assert capsys.readouterr().err.startswith("\r2 of 2 runs")
     flexsc.campaign(short, 2, progress=False)
+    # Parts that no directory can hold run without a line.
+    assert flexsc.campaign(short.with_parts(law=Off()), 2).rows == 2
     assert capsys.readouterr().err == ""
 
 

@@ -35,12 +35,14 @@ impl AxesInUnits {
         }
     }
 
-    /// Returns an error if an axis is missing that a unit measures.
+    /// Returns an error if a unit that was asked for is that of no axis.
     pub fn finish(self) -> Result<(), String> {
         let Some(unused) = self.unused.first() else { return Ok(()) };
-        let usual = self.usual.join(", ");
-        Err(format!(
-            "--units: no axis can be in `{unused}`\n\nhint: the axes are in {usual}, or in other units of these quantities"
-        ))
+        let hint = if self.usual.is_empty() {
+            "the axes have no units".to_owned()
+        } else {
+            format!("the axes are in {}, or in other units of these quantities", self.usual.join(", "))
+        };
+        Err(format!("--units: no axis can be in `{unused}`\n\nhint: {hint}"))
     }
 }

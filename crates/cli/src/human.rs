@@ -62,6 +62,11 @@ impl Units {
         format!("{} {}", digits(unit.value(value)), unit.name)
     }
 
+    /// True if factors on a gain are in dB.
+    pub fn has_decibels(self) -> bool {
+        self.0 != ReaderUnits::Si
+    }
+
     /// Returns the factor from rad/s, and the unit, of natural frequencies.
     pub fn frequency(self) -> (f64, Cow<'static, str>) {
         let unit = self.0.frequency();

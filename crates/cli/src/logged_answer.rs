@@ -33,8 +33,7 @@ pub struct LoggedRun {
 /// # Errors
 /// A log without a scenario, or whose run takes long, needs parts or commands that the log lacks, or differs from the log.
 pub fn run_of_log(log: &Log, path: &Path) -> Result<LoggedRun, CliError> {
-    let mut events = plot::RunEvents::read(log, path, None)?;
-    events.is_noted = false;
+    let events = plot::RunEvents::read(log, path, None)?;
     let metrics = events.repeat(log, path, "motion between its rows", &mut ())?;
     let until = events.until();
     let commands = events.commanded.unwrap_or_default();

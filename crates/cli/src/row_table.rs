@@ -3,7 +3,7 @@
 
 use std::io::Write;
 
-use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits};
+use flexsc_core::formats::reader_units::ReaderUnit;
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
@@ -99,7 +99,7 @@ impl<'a> Column<'a> {
     fn scale(&self, rows: &[Json], units: Units) -> (f64, String) {
         let unit = match self.form {
             NumberForm::Scaled(factor, unit) => return (factor, unit.to_owned()),
-            NumberForm::Gain if is_in_decibels(units) => return (1.0, "dB".to_owned()),
+            NumberForm::Gain if units.has_decibels() => return (1.0, "dB".to_owned()),
             NumberForm::Percent => return (100.0, "%".to_owned()),
             NumberForm::Gain | NumberForm::Decimals(_) | NumberForm::OfRow => return (1.0, String::new()),
             NumberForm::Named => {
@@ -135,17 +135,12 @@ impl<'a> Column<'a> {
             (Some(cell), form) => match (cell.as_f64(), form) {
                 (None, _) => "none".to_owned(),
                 (Some(gain), NumberForm::Gain) if gain <= 0.0 => "none".to_owned(),
-                (Some(gain), NumberForm::Gain) if is_in_decibels(units) => digits(20.0 * gain.log10()),
+                (Some(gain), NumberForm::Gain) if units.has_decibels() => digits(20.0 * gain.log10()),
                 (Some(number), NumberForm::Decimals(count)) => format!("{number:.count$}"),
                 (Some(number), _) => digits(number * factor),
             },
         }
     }
-}
-
-/// Returns true if factors on a gain are in dB.
-fn is_in_decibels(units: Units) -> bool {
-    units.0 != ReaderUnits::Si
 }
 
 /// Appends the numbers of a cell.
@@ -226,6 +221,8 @@ fn quantity(si: f64, unit: &ReaderUnit) -> String {
 #[cfg(test)]
 mod tests {
     use std::f64::consts::TAU;
+
+    use flexsc_core::formats::reader_units::ReaderUnits;
 
     use super::*;
 

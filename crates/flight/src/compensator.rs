@@ -77,8 +77,8 @@ fn row_product(matrices: &[f64], start: usize, vector: &[f64]) -> f64 {
     sum
 }
 
-/// Writes the outputs of a sample, each within the range, and advances the state, which stays where it would not be finite. `next` is a buffer as
-/// long as the state.
+/// Writes the outputs of a sample, each within the range, and advances the state, which stays as it was if it would not be finite.
+/// `next` is a buffer as long as the state.
 pub fn advance(
     matrices: &[f64],
     inputs: &[f64],

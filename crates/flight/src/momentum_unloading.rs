@@ -22,10 +22,11 @@ pub struct MomentumUnloading {
 }
 
 impl MomentumUnloading {
-    /// Returns the torque (N m) of a cycle that reduces the stored momentum (N m s); 0 for a momentum that is not a number.
+    /// Returns the torque (N m) of a cycle that reduces the stored momentum (N m s); 0 for a momentum that is not finite.
     pub fn torque(&mut self, stored: &Vector3) -> Vector3 {
         let limit: f64 = if self.is_active { self.below } else { self.above };
-        self.is_active = stored.norm() > limit;
+        let momentum: f64 = stored.norm();
+        self.is_active = momentum > limit && momentum.is_finite();
         if !self.is_active {
             return Vector3::ZERO;
         }

@@ -12,7 +12,7 @@ use flexsc_flight::error_measure::ErrorMeasure;
 use flexsc_flight::jet_pulses::JetPair;
 use flexsc_flight::kalman::{self, KalmanInnovation, KalmanSample};
 use flexsc_flight::kalman_axis::{KalmanAxis, KalmanFeed};
-use flexsc_flight::magnetorquers::moment_of_torque;
+use flexsc_flight::magnetorquers::{moment_of_torque, torque_of_moment};
 use flexsc_flight::momentum_unloading::MomentumUnloading;
 use flexsc_flight::pulse_width::PulseQuantum;
 use flexsc_flight::rigid_rate::RigidRateFilter;
@@ -316,7 +316,7 @@ fn a_filter_of_the_rate_follows_its_two_equations() {
 }
 
 #[test]
-fn a_number_that_is_not_one_leaves_no_trace() {
+fn numbers_that_are_not_finite_leave_no_trace() {
     let range = CompensatorRange { gain: 1.0, limit: 1.0 };
     let (mut state, mut next, mut output) = ([0.5, -0.25], [0.0; 2], [0.0; 1]);
     advance(&MATRICES, &[f64::NAN, 1.0], &mut state, &mut next, &range, &mut output);
@@ -360,8 +360,9 @@ fn unloading_begins_above_one_momentum_and_ends_below_another() {
         is_active: false,
     };
     let along_x = |x: f64| Vector3 { x, y: 0.0, z: 0.0 };
-    let torques = [0.5, 1.5, 0.5, 0.25, 0.5, f64::NAN].map(|x| law.torque(&along_x(x)).x);
-    assert_eq!(torques, [0.0, -0.75, -0.25, 0.0, 0.0, 0.0]);
+    let stored = [0.5, 1.5, 0.5, 0.25, 0.5, f64::NAN, f64::INFINITY];
+    let torques = stored.map(|x| law.torque(&along_x(x)).x);
+    assert_eq!(torques, [0.0, -0.75, -0.25, 0.0, 0.0, 0.0, 0.0]);
     // Jets remove it in a period, all axes alike within their torque.
     (law.is_magnetic, law.period, law.most) = (false, 2.0, 0.25);
     assert_eq!(law.torque(&Vector3 { x: 2.0, y: -1.0, z: 0.0 }), Vector3 { x: -0.25, y: 0.125, z: -0.0 });
@@ -369,5 +370,9 @@ fn unloading_begins_above_one_momentum_and_ends_below_another() {
     let (field, limits) = (Vector3 { x: 0.0, y: 0.0, z: 2.0 }, Vector3 { x: 1.0, y: 1.0, z: 1.0 });
     let moment = moment_of_torque(&Vector3 { x: 1.0, y: -3.0, z: 7.0 }, &field, &limits);
     assert_eq!(moment, Vector3 { x: 1.0, y: 1.0 / 3.0, z: 0.0 });
-    assert_eq!(moment_of_torque(&along_x(1.0), &Vector3::ZERO, &limits), Vector3::ZERO);
+    assert_eq!(torque_of_moment(&moment, &field), Vector3 { x: 2.0 / 3.0, y: -2.0, z: 0.0 });
+    for field in [Vector3::ZERO, along_x(f64::NAN), along_x(f64::INFINITY)] {
+        assert_eq!(moment_of_torque(&along_x(1.0), &field, &limits), Vector3::ZERO);
+        assert_eq!(torque_of_moment(&moment, &field), Vector3::ZERO);
+    }
 }

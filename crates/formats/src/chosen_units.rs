@@ -46,6 +46,18 @@ impl Rate {
     }
 }
 
+/// Returns the first two units that measure the same quantities.
+fn twice(names: &[&'static str]) -> Option<[&'static str; 2]> {
+    names.iter().enumerate().find_map(|(place, other)| {
+        let is_same = |first: &&&str| {
+            units_ratio(first, other).is_some()
+                && Rate::named(first) == Rate::named(other)
+                && first.contains('J') == other.contains('J')
+        };
+        Some([*names[..place].iter().find(is_same)?, *other])
+    })
+}
+
 impl FromStr for ChosenUnits {
     type Err = String;
 
@@ -57,7 +69,12 @@ impl FromStr for ChosenUnits {
         match names.iter().find(|name| units_ratio(name, name).is_none()) {
             Some(unknown) => Err(format!("`{unknown}` is not a unit{}", unknown_unit(unknown))),
             None if names.is_empty() => Err("names no unit".to_owned()),
-            None => Ok(Self(Box::leak(names.into_boxed_slice()))),
+            None => match twice(&names) {
+                Some([first, other]) => {
+                    Err(format!("`{first}` and `{other}` are units of one quantity: give one of them"))
+                }
+                None => Ok(Self(Box::leak(names.into_boxed_slice()))),
+            },
         }
     }
 }
@@ -88,9 +105,12 @@ mod tests {
 
     #[test]
     fn what_is_no_unit_is_refused() {
-        for (text, why) in
-            [("deg, arcsecond", "did you mean `arcsec`?"), ("deg, bla", "known are"), (" ,", "names no unit")]
-        {
+        for (text, why) in [
+            ("deg, arcsecond", "did you mean `arcsec`?"),
+            ("deg, bla", "known are"),
+            (" ,", "names no unit"),
+            ("deg, mN m, arcsec", "`deg` and `arcsec` are units of one quantity"),
+        ] {
             assert!(text.parse::<ChosenUnits>().is_err_and(|error| error.contains(why)), "{text}");
         }
     }

@@ -365,9 +365,14 @@ pub fn time(seconds: f64) -> String {
     format!("{} s", number(seconds))
 }
 
-/// Returns the length of a window or a period as text: `20 ms`, `0.5 s`, `300 s`, `3 h`.
+/// Returns the length of a window or a period as text, in seconds if three digits would round it: `20 ms`, `0.5 s`, `300 s`, `3 h`.
 pub fn time_span(seconds: f64) -> String {
-    ReaderUnit::for_time_axis(seconds).exact(seconds)
+    let unit = ReaderUnit::for_time_axis(seconds);
+    let shown = unit.number(seconds).replace(THIN_SPACE, "").parse().unwrap_or(f64::NAN) * unit.size;
+    if (shown - seconds).abs() <= 1e-9 * seconds {
+        return unit.exact(seconds);
+    }
+    format!("{} s", grouped(without_zeros(&format!("{seconds:.9}"))))
 }
 
 /// Returns a duration, roughly: `3 ms`, `20 s`, `5 min`, `7 h`.
@@ -453,6 +458,7 @@ mod tests {
         {
             assert_eq!(time_span(value), text);
         }
+        assert_eq!([10_000.0, 12.345].map(time_span), ["10\u{202f}000 s", "12.345 s"]);
     }
 
     #[test]

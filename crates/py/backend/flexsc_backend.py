@@ -78,10 +78,10 @@ def _built_library(settings: Mapping[str, Any] | None) -> Path:
 
 
 def _packed(library: Path) -> bytes:
-    """The archive of the library, from which the engine reads it: it takes a third of its size."""
+    """A ZIP archive of the library, a third of its size, out of which the engine takes it."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        # With a date of its own, equal libraries have equal archives.
+        # With the same date, equal libraries have equal archives.
         entry = zipfile.ZipInfo(library.name)
         entry.compress_type = zipfile.ZIP_DEFLATED
         archive.writestr(entry, library.read_bytes(), compresslevel=9)

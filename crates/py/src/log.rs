@@ -77,6 +77,6 @@ pub fn log_run<'py>(py: Python<'py>, log: &Log) -> PyResult<LoggedRun<'py>> {
     let flexsc_cli::LoggedRun { scenario: inner, run, commands, until, metrics } =
         found.map_err(|error| PyValueError::new_err(error.to_string()))?;
     let scenario = Scenario { origin: inner.name.clone(), inner };
-    let end = until.seconds().min(scenario.inner.duration.seconds());
+    let end = until.seconds();
     Ok((scenario, run, Commands { commands, until }, end, columns::metrics_to_dict(py, &metrics)?))
 }

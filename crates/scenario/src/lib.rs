@@ -131,7 +131,7 @@ impl Scenario {
 
     fn solved(document: &Document, parent: Option<&Self>, own: &CustomParts) -> Result<Self, ScenarioError> {
         let units_written =
-            parent.map_or_else(|| WrittenUnits::of_table(document.table()), |parent| parent.units.clone());
+            parent.map_or_else(|| WrittenUnits::from_table(document.table()), |parent| parent.units.clone());
         let document = &*document.in_si::<ScenarioSpec>(units)?;
         let (written, model) = Self::assembled(document, parent, own)?;
         let fitted = Self::fitted(written, model).map_err(|errors| document.at_keys(&errors))?;

@@ -61,24 +61,24 @@ impl LineOfSight {
     pub fn sensitivity(&self, body: &ThreeAxisModel) -> LineSensitivity {
         let direction = self.direction();
         if self.optics.is_empty() {
-            return LineSensitivity::of_point(body, &self.point, &direction);
+            return LineSensitivity::for_point(body, &self.point, &direction);
         }
         let along = direction.iamax();
         let about = [1, 2].map(|next| Vector::ith((along + next) % 3, 1.0));
-        LineSensitivity::of_optics(body, &self.optics, about)
+        LineSensitivity::for_optics(body, &self.optics, about)
     }
 
     /// Returns the remark that optics turn the line of sight by another angle than the rigid body turns.
     pub(super) fn remark(&self, body: &ThreeAxisModel) -> Option<ConfigError> {
-        let exact = LineSensitivity::of_point(body, &self.point, &self.direction()).rigid;
+        let exact = LineSensitivity::for_point(body, &self.point, &self.direction()).rigid;
         let found = self.sensitivity(body).rigid;
         let (row, column) = (found - exact).abs().iamax_full();
         let (found, exact) = (found[(row, column)], exact[(row, column)]);
         let (about, axis) = (AXIS_NAMES[row], AXIS_NAMES[column]);
         ((found - exact).abs() > DEVIATION).then(|| {
             let why = format!(
-                "turn the line of sight by {} rad about {about} where the whole body turns by 1 rad about {axis}, and a distant object \
-                 needs {exact}: is a sign wrong?",
+                "turn the line of sight by {} deg about {about} where the whole body turns by 1 deg about {axis}, and a distant object \
+                 needs {exact} deg: is a sign wrong?",
                 number(found)
             );
             ConfigError::new("optics", why)

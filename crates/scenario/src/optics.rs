@@ -36,8 +36,8 @@ pub struct LineSensitivity {
 }
 
 impl LineSensitivity {
-    /// Returns that of an instrument that turns with a point and looks along a unit vector.
-    pub fn of_point(body: &ThreeAxisModel, point: &str, direction: &Vector) -> Self {
+    /// Returns the sensitivity of an instrument that turns with a point and looks along a unit vector.
+    pub fn for_point(body: &ThreeAxisModel, point: &str, direction: &Vector) -> Self {
         let across = |rotation: &Vector| rotation - direction * direction.dot(rotation);
         Self {
             rigid: Matrix3::from_columns(&[0, 1, 2].map(|axis| across(&Vector::ith(axis, 1.0)))),
@@ -45,8 +45,8 @@ impl LineSensitivity {
         }
     }
 
-    /// Returns that of optics, whose rows are about two axes.
-    pub fn of_optics(body: &ThreeAxisModel, optics: &[OpticalElement], about: [Vector; 2]) -> Self {
+    /// Returns the sensitivity of optics, whose rows are about two axes.
+    pub fn for_optics(body: &ThreeAxisModel, optics: &[OpticalElement], about: [Vector; 2]) -> Self {
         let mut all = Self { rigid: Matrix3::zeros(), modes: vec![Vector::zeros(); body.modes.len()] };
         for element in optics {
             let position = body.point(&element.point).unwrap_or_default();

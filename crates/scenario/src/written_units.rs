@@ -19,7 +19,7 @@ impl PartialEq for WrittenUnits {
 
 impl WrittenUnits {
     /// Returns the units of the texts in a table.
-    pub fn of_table(table: &Table) -> Self {
+    pub fn from_table(table: &Table) -> Self {
         let mut units = BTreeMap::new();
         table.iter().for_each(|(key, value)| collect(value, bare_or_quoted(key), &mut units));
         Self(Arc::new(units))

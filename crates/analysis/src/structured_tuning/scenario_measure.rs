@@ -136,7 +136,8 @@ impl ScenarioMeasure {
                 let robustness = found.0.iter().find(|found| found.requirement == *index);
                 let robustness =
                     robustness.filter(|_| ended.is_ok()).and_then(RequirementRobustness::decided);
-                // A run that fails or does not decide is beyond every limit.
+                // A run that fails, decides nothing or exercises nothing is beyond every limit.
+                let robustness = robustness.filter(|own| own.is_finite());
                 Ok(vec![
                     robustness.map_or(f64::INFINITY, |robustness| own.limit - robustness * formula.scale),
                 ])

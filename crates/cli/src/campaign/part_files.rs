@@ -48,7 +48,7 @@ pub fn create(path: &Path, manifest: Manifest, job: &CampaignJob<'_>) -> Result<
 ///
 /// # Errors
 /// A directory of another campaign.
-pub fn opened_for(campaign: &Campaign, path: &Path) -> Result<Directory, CliError> {
+pub fn open(campaign: &Campaign, path: &Path) -> Result<Directory, CliError> {
     let directory = Directory::open(path).map_err(failure)?;
     let work = directory.work();
     let same = Manifest::new(campaign, work.manifest.runs(), &work.selection)

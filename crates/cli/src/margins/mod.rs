@@ -13,7 +13,6 @@ use flexsc_core::analysis::scenario_margins::{MarginsFault, ScenarioMargins};
 use flexsc_core::analysis::settling_time::SETTLING_BAND;
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::ConfigError;
-use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::worst_case::{MarginKind, MarginSearch, WorstCase, uncertain_box};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::Named;
@@ -251,10 +250,8 @@ impl LoopMargins {
     /// Prints the least margins over the uncertain keys, with the keys where they are attained.
     fn print_worst(&self) {
         let row = |(kind, case): &(MarginKind, WorstCase)| {
-            let (scale, unit): (fn(f64) -> f64, &str) = match (kind, self.units) {
-                (MarginKind::Gain, Units(units)) if units != ReaderUnits::Si => {
-                    (|factor| 20.0 * factor.log10(), "dB")
-                }
+            let (scale, unit): (fn(f64) -> f64, &str) = match kind {
+                MarginKind::Gain if self.units.has_decibels() => (|factor| 20.0 * factor.log10(), "dB"),
                 _ => (|value| value, kind.unit()),
             };
             let keys = case.ranges.keys.iter().zip(case.key_values(case.worst));

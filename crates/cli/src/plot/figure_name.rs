@@ -26,13 +26,15 @@ impl FigureName {
     /// # Errors
     /// A name that is neither a topic nor a kind.
     pub fn parse(name: &str) -> Result<Self, String> {
+        Self::unlisted(name).map_or_else(|| clap::ValueEnum::from_str(name, false).map(Self::Kind), Ok)
+    }
+
+    /// Returns the figure of a topic or of one requirement; `None` for the name of a kind.
+    fn unlisted(name: &str) -> Option<Self> {
         if name.starts_with('/') {
-            return Ok(Self::Topic(name.to_owned()));
+            return Some(Self::Topic(name.to_owned()));
         }
-        if let Some(own) = name.strip_prefix(OF_REQUIREMENT) {
-            return Ok(Self::Requirement(own.to_owned()));
-        }
-        clap::ValueEnum::from_str(name, false).map(Self::Kind)
+        name.strip_prefix(OF_REQUIREMENT).map(|own| Self::Requirement(own.to_owned()))
     }
 
     /// Splits names into kinds and topics.
@@ -64,11 +66,9 @@ impl TypedValueParser for FigureNameParser {
         argument: Option<&clap::Arg>,
         value: &OsStr,
     ) -> Result<FigureName, clap::Error> {
-        match value.to_str() {
-            Some(name) if name.starts_with('/') || name.starts_with(OF_REQUIREMENT) => {
-                FigureName::parse(name).map_err(|_| clap::Error::new(clap::error::ErrorKind::InvalidValue))
-            }
-            _ => {
+        match value.to_str().and_then(FigureName::unlisted) {
+            Some(name) => Ok(name),
+            None => {
                 EnumValueParser::<FigureKind>::new().parse_ref(command, argument, value).map(FigureName::Kind)
             }
         }

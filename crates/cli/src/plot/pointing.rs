@@ -57,7 +57,7 @@ pub fn error_panel(story: &RunEvents, errors: &[Point], shown: Range<f64>) -> Pa
     let goal = story.scenario.reference.band.map(Positive::get);
     let goal = goal.filter(|_| story.scenario.has_goal() && limits.is_empty());
     let lines = limits.iter().map(|own| own.required.limit).chain(goal);
-    let values = usual(inside.iter().map(|point| point.1)).into_iter().chain(lines);
+    let values = logarithmic_sizes(inside.iter().map(|point| point.1)).into_iter().chain(lines);
     let y = FigureAxis::decades("pointing error", "rad", values);
     let y = limits.first().map_or(y.clone(), |own| y.in_unit(own.required.unit.clone()));
     let unit = y.reader_unit();
@@ -82,7 +82,7 @@ pub fn error_panel(story: &RunEvents, errors: &[Point], shown: Range<f64>) -> Pa
 }
 
 /// Returns the sizes that a logarithmic axis shows: without the smallest, and those far below the largest.
-pub fn usual(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
+pub fn logarithmic_sizes(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let mut sizes: Vec<f64> = values.into_iter().filter(|size| *size > 0.0 && size.is_finite()).collect();
     sizes.sort_by(f64::total_cmp);
     let least = NOTHING.min(FAR_BELOW * sizes.last().copied().unwrap_or(0.0));
@@ -189,7 +189,7 @@ pub fn norm(vector: [f64; 3]) -> f64 {
 
 /// Returns a panel of angles (rad) over time with a logarithmic axis, which shows small errors after a large transient.
 pub fn decades(story: &RunEvents, name: &str, layers: Vec<Layer>) -> Panel {
-    let values = usual(layers.iter().flat_map(|layer| &layer.points).map(|point| point.1));
+    let values = logarithmic_sizes(layers.iter().flat_map(|layer| &layer.points).map(|point| point.1));
     let y = FigureAxis::decades(name, "rad", values);
     Panel::new(time(0.0..story.end), y, layers)
 }

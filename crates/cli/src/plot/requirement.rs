@@ -10,7 +10,7 @@ use flexsc_core::scenario::{AssessedRequirement, RequirementFormula, Requirement
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, colour};
 
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
-use super::pointing::usual;
+use super::pointing::logarithmic_sizes;
 use super::run_events::RunEvents;
 use super::{time, title};
 use crate::error::CliError;
@@ -162,7 +162,7 @@ fn figure(run: &RunData<'_>) -> Figure {
         let points = places.iter().map(|place| &judged.signals.signals[*place][..]);
         let signals = OwnSignals(leaves.zip(points).collect());
         let robustness = judged.robustness.iter().find(|found| found.requirement == *requirement);
-        panels.extend(of_requirement(story, (*requirement, own, formula), &signals, robustness));
+        panels.extend(requirement_panels(story, (*requirement, own, formula), &signals, robustness));
     }
     let last = panels.len().saturating_sub(1);
     for panel in panels.iter_mut().take(last) {
@@ -172,8 +172,8 @@ fn figure(run: &RunData<'_>) -> Figure {
     Figure { title: title(story, "requirements over time"), panels, panel_height }
 }
 
-/// Returns the panels of a requirement: one for each quantity that is compared, or one that shows whether a condition of flags holds.
-fn of_requirement(
+/// Returns the panels of a requirement: one for each limit of a quantity, or one that shows whether a condition of flags holds.
+fn requirement_panels(
     story: &RunEvents,
     (index, own, formula): (usize, &AssessedRequirement, &RequirementFormula),
     signals: &OwnSignals<'_>,
@@ -192,9 +192,7 @@ fn of_requirement(
     let mut flags = Vec::new();
     for leaf in formula.expression.measured() {
         match leaf {
-            Expression::Compared { quantity, limit, .. }
-                if compared.iter().all(|known| known.0 != *quantity) =>
-            {
+            Expression::Compared { quantity, limit, .. } if !compared.contains(&(*quantity, *limit)) => {
                 compared.push((*quantity, *limit));
             }
             Expression::Flag(_) => flags.push(leaf.clone()),
@@ -275,7 +273,7 @@ fn of_requirement(
 /// Returns the axis of a quantity with its limit: with decades if it has no sign and its values are far apart.
 fn axis(name: &str, unit: &'static str, points: &[Point], limit: f64) -> FigureAxis {
     let values = || points.iter().map(|point| point.1).chain([limit]).filter(|value| value.is_finite());
-    let sizes = usual(values());
+    let sizes = logarithmic_sizes(values());
     let (least, most) = (sizes.first().copied().unwrap_or(0.0), sizes.last().copied().unwrap_or(0.0));
     // A size may be below 0 by rounding.
     let is_size = values().all(|value| value >= -ROUNDING * most);

@@ -48,7 +48,7 @@ pub struct ReportArgs {
     /// Number of runs of the campaign; 0 leaves it out [default: 100, or those in DIR]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(..=MOST_RUNS))]
     runs: Option<u64>,
-    /// Directory of the campaign, as of `simulate --runs N -o DIR`: its runs are used, and missing ones are added
+    /// Directory of the campaign, as of `simulate --runs N -o DIR`: all of its runs are used, and missing ones are added
     #[arg(long, value_name = "DIR")]
     campaign: Option<PathBuf>,
     /// Write the page again, without the campaign, each time the scenario file is saved, until Ctrl-C; an open page reloads itself
@@ -80,6 +80,10 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
     let study = Study::load(&args.scenario, &args.set)?;
     let directory = args.campaign.as_deref();
     let source = match args.runs {
+        Some(0) if directory.is_some() => {
+            let why = "--runs 0 leaves the campaign out, and --campaign names its directory";
+            return Err(CliError::Arguments(why.to_owned()));
+        }
         Some(0) => None,
         runs => Some(CampaignSource { runs, directory }),
     };

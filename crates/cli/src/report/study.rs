@@ -18,7 +18,7 @@ use crate::error::CliError;
 use crate::stop::{self, stop_flag};
 use crate::{Cli, Verb, budget, memory_log, plot, scenario};
 
-/// Number of runs without a wish.
+/// Number of runs of a campaign, unless another is asked for.
 const DEFAULT_RUNS: u64 = 100;
 /// Figures of requirements that a campaign draws.
 const DISTRIBUTION: &str = "distribution";
@@ -191,11 +191,8 @@ fn filled(campaign: &Campaign, path: &Path, runs: Option<u64>) -> Result<Directo
         let why = "is a file, not the directory of a campaign";
         return Err(CliError::Arguments(format!("--campaign {}: {why}", path.display())));
     }
-    let existing = if Directory::is_campaign_directory(path) {
-        Some(Directory::open(path).map_err(part_files::failure)?)
-    } else {
-        None
-    };
+    let is_there = Directory::is_campaign_directory(path);
+    let existing = is_there.then(|| part_files::open(campaign, path)).transpose()?;
     let (held, selection) = existing.map_or((DEFAULT_RUNS, Selection::ALL), |held| {
         (held.work().manifest.runs().end, held.work().selection.clone())
     });

@@ -131,7 +131,7 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
     }
     let origin = args.scenario.scenario.display().to_string();
     let campaign = Campaign::from_design(scenario.clone(), &origin, Design::default())?;
-    let made = args.campaign.as_deref().map(|path| part_files::opened_for(&campaign, path)).transpose()?;
+    let made = args.campaign.as_deref().map(|path| part_files::open(&campaign, path)).transpose()?;
     let runs = u64::from(args.points) * quantities.len() as u64;
     let cost = campaign.cost(runs, None).map_err(|why| CliError::Arguments(format!("--points: {why}")))?;
     args.consent.check(&cost)?;

@@ -39,7 +39,8 @@ pub use flexsc_record::metrics::{MetricDescription, MetricValue, Metrics, NamedM
 
 pub use envelope::METRICS as OF_ENVELOPE;
 pub use index_record::IndexRecord;
-pub(crate) use requirements::{ErrorStream, is_not_exercised, metric_value};
+pub use requirements::is_not_exercised;
+pub(crate) use requirements::{ErrorStream, metric_value};
 pub use selection::Selection;
 
 use adaptation::AdaptationMetrics;

@@ -10,7 +10,7 @@ use flexsc_core::numerics::flight_types::to_vector3;
 use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::numerics::time::Span;
 use flexsc_flight::jet_pulses::{JetPair, JetTorques};
-use flexsc_flight::magnetorquers::moment_of_torque;
+use flexsc_flight::magnetorquers::{moment_of_torque, torque_of_moment};
 use flexsc_flight::momentum_unloading::MomentumUnloading;
 use flexsc_flight::vector3::Vector3;
 use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
@@ -167,13 +167,12 @@ impl Actuation {
 
     /// Returns true if magnetorquers unload the wheels.
     pub fn unloads_by_magnetorquers(&self) -> bool {
-        let device = self.unloading.as_ref().map(|unit| &unit.device);
-        matches!(device, Some(UnloadingDevice::Magnetorquers(_)))
+        self.unloading.as_ref().is_some_and(|unit| unit.law.is_magnetic)
     }
 
-    /// Ends the unloading, because laws command the magnetorquers.
+    /// Ends the unloading by magnetorquers, because laws command them.
     pub(super) fn release(&mut self) {
-        if let Some(unit) = &mut self.unloading {
+        if let Some(unit) = self.unloading.as_mut().filter(|unit| unit.law.is_magnetic) {
             (unit.law.is_active, unit.counter) = (false, Vector3::ZERO);
         }
     }
@@ -241,7 +240,7 @@ impl UnloadingUnit {
             (UnloadingDevice::Magnetorquers(limits), None) => {
                 let (torque, field) = (self.law.torque(&stored), vector(&mut words));
                 let moment = moment_of_torque(&torque, &field, limits);
-                self.counter = moment.cross(&field);
+                self.counter = torque_of_moment(&moment, &field);
                 vector_words(&moment).to_vec()
             }
             (UnloadingDevice::Jets(pairs, torques), _) => {

@@ -82,8 +82,11 @@ impl ControlSystem {
         for member in &members {
             let key = member.key.clone();
             if !member.executes() {
-                // B-dot laws alone command the magnetorquers, and do not unload.
-                let is_included = actuation.is_none_or(|own| own.unloading.is_some());
+                let is_included = match self {
+                    // B-dot laws alone command the magnetorquers, which do not unload.
+                    Self::BDot(_) => are_magnetorquers(&member.kind),
+                    _ => actuation.is_some_and(|own| own.unloading.is_some()),
+                };
                 if !is_included {
                     add(member.unloading_key(), "unload the momentum of the wheels");
                 }

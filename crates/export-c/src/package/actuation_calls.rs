@@ -21,7 +21,7 @@ pub fn roots(own: &Actuation, are_changes: &[bool]) -> Vec<&'static str> {
     match own.unloading.as_ref().map(|unit| &unit.device) {
         None => return roots,
         Some(UnloadingDevice::Magnetorquers(_)) => {
-            roots.extend(["magnetorquers::moment_of_torque", "vector3::Vector3::cross"]);
+            roots.extend(["magnetorquers::moment_of_torque", "magnetorquers::torque_of_moment"]);
         }
         Some(UnloadingDevice::Jets(..)) => roots.extend([
             "jet_pulses::JetPair::on_time_of_torque",
@@ -110,18 +110,15 @@ pub fn init(plan: &Plan<'_>, own: &Actuation, text: &mut String) {
     }
     if let Some(unit) = &own.unloading {
         let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
+        let members = [("above", "above"), ("below", "below"), ("gain", "gain"), ("most", "torque")];
+        let law = members.into_iter().fold(initialiser(&unit.law, prefix), |law, (member, name)| {
+            let name = format!("unload_{name}");
+            let is_tuned = plan.parameters.iter().any(|own| own.name == name);
+            if is_tuned { parameters::replaced(&law, member, &format!("parameters->{name}")) } else { law }
+        });
         let _ = writeln!(
             text,
-            "    state->unloading = ({prefix}_momentum_unloading){};\n    state->counter = {zero};\n    state->demanded = {zero};",
-            [("above", "above"), ("below", "below"), ("gain", "gain"), ("most", "torque")].into_iter().fold(
-                initialiser(&unit.law, prefix),
-                |text, (member, name)| {
-                    let name = format!("unload_{name}");
-                    let is_tuned = plan.parameters.iter().any(|own| own.name == name);
-                    let value = format!("parameters->{name}");
-                    if is_tuned { parameters::replaced(&text, member, &value) } else { text }
-                }
-            )
+            "    state->unloading = ({prefix}_momentum_unloading){law};\n    state->counter = {zero};\n    state->demanded = {zero};"
         );
     }
 }
@@ -173,9 +170,9 @@ pub fn jets(own: &Actuation, is_change: bool, indent: &str, from: &str, text: &m
     }
 }
 
-/// Writes the function that begins a cycle of the unloading; while `held` is true, laws command the magnetorquers, and
-/// `state->moment` has their moment.
-pub fn unload(plan: &Plan<'_>, own: &Actuation, held: Option<&str>, keeps_moment: bool, text: &mut String) {
+/// Writes the function that begins a cycle of the unloading. With B-dot laws `state->moment` has the moment of the magnetorquers, and
+/// `held` is the condition in C under which these laws command it.
+pub fn unload(plan: &Plan<'_>, own: &Actuation, held: Option<&str>, text: &mut String) {
     let Some(unit) = &own.unloading else { return };
     let Some(call) = plan.calls.iter().find(|call| call.name == "unload") else { return };
     let prefix = plan.prefix;
@@ -190,17 +187,18 @@ pub fn unload(plan: &Plan<'_>, own: &Actuation, held: Option<&str>, keeps_moment
     let torque = "momentum_unloading_torque(&state->unloading, &stored)";
     match &unit.device {
         UnloadingDevice::Magnetorquers(_) => {
-            let moment = if keeps_moment { "state->moment" } else { "moment" };
-            let indent = if held.is_some() { "        " } else { "    " };
+            let (moment, indent, declared) = match held {
+                Some(_) => ("state->moment", "        ", String::new()),
+                None => ("moment", "    ", format!("const {prefix}_vector3 ")),
+            };
             let _ = writeln!(text, "    const {prefix}_vector3 field = {};", vector("field"));
             if let Some(held) = held {
                 let _ = writeln!(text, "    if (!({held})) {{");
             }
-            let declared = if keeps_moment { String::new() } else { format!("const {prefix}_vector3 ") };
             let _ = writeln!(
                 text,
                 "{indent}const {prefix}_vector3 torque = {torque};\n{indent}{declared}{moment} = magnetorquers_moment_of_torque(&torque, &field, &unloading_limits);\n\
-                 {indent}state->counter = vector3_cross(&{moment}, &field);"
+                 {indent}state->counter = magnetorquers_torque_of_moment(&{moment}, &field);"
             );
             if held.is_some() {
                 text.push_str("    }\n");

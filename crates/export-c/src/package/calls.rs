@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use flexsc_core::numerics::attitude::AXES;
 use flexsc_flight::gain_schedule::SchedulePoint;
 
 use super::initialiser::initialiser;
@@ -11,9 +12,6 @@ use super::{
     rate_calls,
 };
 use crate::control_system::{ControlSystem, LawsOfAxes, Relays, SampledLaws};
-
-/// Names of the axes of a body with three.
-const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 
 /// Returns the constants and the functions.
 pub fn functions(plan: &Plan<'_>) -> String {
@@ -135,7 +133,7 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     if let Some(unit) = &laws.rate_filter {
         rate_calls::sample(plan, unit, text);
     }
-    actuation_calls::unload(plan, &laws.actuation, None, false, text);
+    actuation_calls::unload(plan, &laws.actuation, None, text);
     let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[laws.step_index()]));
     if let Some(unit) = &laws.estimator {
         let _ = writeln!(

@@ -130,7 +130,7 @@ pub fn functions(plan: &Plan<'_>, modes: &ModeSystem) -> String {
         detumbling.map(|(mode, _)| format!("state->supervisor.active == {mode}")).collect();
     let held = detumbling.join(" || ");
     let held = Some(held.as_str()).filter(|held| !held.is_empty());
-    actuation_calls::unload(plan, &modes.actuation, held, held.is_some(), &mut text);
+    actuation_calls::unload(plan, &modes.actuation, held, &mut text);
     step(plan, modes, &parts, &mut text);
     text
 }
@@ -430,7 +430,7 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
     text.push_str("    output->mode = (int64_t)state->supervisor.active;\n}\n");
 }
 
-/// Writes the decisions of B-dot laws, which end the unloading.
+/// Writes the decisions of B-dot laws, which end the unloading by magnetorquers.
 fn b_dot_cases(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
     let prefix = plan.prefix;
     for (index, laws) in
@@ -441,7 +441,7 @@ fn b_dot_cases(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
             let moment = b_dot_calls::moment(plan, laws, Some(&modes.modes[index].name), axis);
             let _ = writeln!(text, "        state->moment.{component} = {moment};");
         }
-        if modes.actuation.unloading.is_some() {
+        if modes.actuation.unloads_by_magnetorquers() {
             let _ = writeln!(
                 text,
                 "        state->unloading.is_active = false;\n        state->counter = ({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }};"

@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 
+use flexsc_core::control::operation::ModeReading;
+use flexsc_core::numerics::attitude::AXES;
+use flexsc_flight::mode_condition::{ConditionSource, ConditionStep};
+
 use super::Plan;
 use super::initialiser::initialiser;
 use crate::control_system::{Actuation, BDotLaws, ControlSystem, LawsOfAxes, ModeSystem, SampledLaws};
-
-/// Names of the axes of a body with three.
-const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 
 /// Factor by which a parameter may be larger or smaller than its default.
 const FACTOR: f64 = 10.0;
@@ -188,26 +189,30 @@ fn of_actuation(own: &Actuation, all: &mut Vec<FlightParameter>) {
     }
 }
 
-/// Returns the comparisons of modes with a limit in the unit of their reading, with the names of their parameters.
+/// Returns the indices of the comparisons of numbers in the conditions of modes, with the names of their parameters: the mode,
+/// the one that follows, and the place among all comparisons between these two.
 pub fn thresholds(modes: &ModeSystem) -> Vec<(usize, String)> {
     let tables = &modes.tables;
+    let steps_of = |exit: usize| {
+        let next = tables.exits.get(exit + 1).map_or(tables.steps.len(), |next| next.first_step);
+        tables.exits[exit].first_step..next
+    };
+    let has_limit = |step: &ConditionStep| {
+        let reading = tables.readings.get(step.index);
+        let is_number = matches!(reading, Some(ModeReading::Known(quantity)) if !quantity.is_boolean());
+        step.source == ConditionSource::Reading && is_number && step.limit.is_finite()
+    };
     let mut found: Vec<(usize, String)> = Vec::new();
     for (mode, own) in tables.modes.iter().enumerate() {
-        for exit in own.first_exit..own.first_exit + own.exit_count {
-            let next = tables.exits.iter().map(|other| other.first_step);
-            let first = tables.exits[exit].first_step;
-            let end = next.filter(|step| *step > first).min().unwrap_or(tables.steps.len());
-            for step in first..end {
-                let is_reading =
-                    tables.steps[step].source == flexsc_flight::mode_condition::ConditionSource::Reading;
-                let reading = tables.readings.get(tables.steps[step].index);
-                let is_truth =
-                    matches!(reading, Some(flexsc_core::control::operation::ModeReading::Truth(_)));
-                if is_reading && !is_truth && !found.iter().any(|(known, _)| *known == step) {
-                    let to = &modes.modes[tables.exits[exit].to].name;
-                    let name = format!("{}_to_{to}_{}", modes.modes[mode].name, step - first);
-                    found.push((step, name));
-                }
+        let exits = own.first_exit..own.first_exit + own.exit_count;
+        for exit in exits.clone() {
+            let to = tables.exits[exit].to;
+            let to_same = exits.clone().filter(|other| tables.exits[*other].to == to && *other < exit);
+            let before: usize = to_same.map(|other| steps_of(other).len()).sum();
+            let limited = steps_of(exit).enumerate().filter(|(_, step)| has_limit(&tables.steps[*step]));
+            for (place, step) in limited {
+                let (name, next) = (&modes.modes[mode].name, &modes.modes[to].name);
+                found.push((step, format!("{name}_to_{next}_{}", before + place)));
             }
         }
     }
@@ -225,10 +230,17 @@ fn of_modes(modes: &ModeSystem, all: &mut Vec<FlightParameter>) {
     }
     of_actuation(&modes.actuation, all);
     for (step, name) in thresholds(modes) {
+        let mut about = "Limit of a comparison with which a mode ends".to_owned();
+        let compared = &modes.tables.steps[step];
+        if let Some(ModeReading::Known(quantity)) = modes.tables.readings.get(compared.index)
+            && !quantity.unit().is_empty()
+        {
+            let _ = write!(about, " ({})", quantity.unit());
+        }
         all.push(FlightParameter {
             name,
-            about: "Limit of a comparison with which a mode ends, in the unit of its reading".to_owned(),
-            value: modes.tables.steps[step].limit,
+            about,
+            value: compared.limit,
             running: Some(format!("steps[{step}].limit")),
         });
     }

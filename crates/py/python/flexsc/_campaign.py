@@ -293,6 +293,9 @@ class _Study(NamedTuple):
             found: float = analysis("estimate", scenario, runs=runs, log=self.log)["seconds"]
             return found
 
+        if progress is None and executor is None and scenario.own_parts:
+            # No directory can hold these parts: their runs are made in one call, which has no progress.
+            progress = False
         report = callback(progress, seconds)
         if out is None and executor is None and report is None:
             columns, summaries = work.make(work.runs, threads)

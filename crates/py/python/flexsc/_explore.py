@@ -58,7 +58,7 @@ class Explorer:
         given = keys if isinstance(keys, Mapping) else dict.fromkeys(keys)
         self.sliders = {key: _slider(widgets, key, scenario.get(key), span) for key, span in given.items()}
         self.shown = widgets.HTML()
-        self.widget = widgets.VBox([*self.sliders.values(), self.shown])
+        self._widget = widgets.VBox([*self.sliders.values(), self.shown])
         for slider in self.sliders.values():
             slider.observe(self._show, "value")
         self._show()
@@ -79,7 +79,7 @@ class Explorer:
             slider.continuous_update = follows
 
     def _repr_mimebundle_(self, **options: Any) -> Any:
-        return self.widget._repr_mimebundle_(**options)
+        return self._widget._repr_mimebundle_(**options)
 
 
 def _slider(widgets: Any, key: str, value: Any, span: Sequence[Any] | None) -> Any:
@@ -89,14 +89,15 @@ def _slider(widgets: Any, key: str, value: Any, span: Sequence[Any] | None) -> A
         "style": {"description_width": "initial"},
         "layout": widgets.Layout(width="560px"),
     }
-    if isinstance(span, list):
+    if isinstance(span, list) and span:
         return widgets.SelectionSlider(options=span, value=value if value in span else span[0], **look)
     number = number_to_vary(key, value)
     if span is None and number == 0.0:
         raise ValueError(f"{key} is 0, so its range must be given: keys={{{key!r}: (low, high)}}")
-    low, high = sorted((0.5 * number, 2.0 * number)) if span is None else span
-    if not low < high:
+    ends: Sequence[Any] = sorted((0.5 * number, 2.0 * number)) if span is None else span
+    if len(ends) != 2 or not ends[0] < ends[1]:
         raise ValueError(f"the range of {key} must be (low, high), got {span!r}")
+    low, high = ends
     look |= {"value": min(max(value, low), high)}
     if isinstance(value, int):
         return widgets.IntSlider(min=int(low), max=int(high), **look)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Optimum(NamedTuple):
-    """What `optimise` has found."""
+    """Result of `optimise`: the scenario with the best values, and SciPy's account of the search."""
 
     scenario: Scenario
     """The scenario with the best values."""

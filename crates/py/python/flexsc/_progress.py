@@ -16,7 +16,9 @@ _LONG_S = 60.0
 
 def callback(progress: Progress, seconds: Callable[[], float]) -> Callable[[int, int], None] | None:
     """Return the function that is called with the progress, if any, of work that takes some seconds."""
-    if progress is True or (progress is None and sys.stderr.isatty() and seconds() > _LONG_S):
+    # A program without a console has no standard error.
+    is_shown = progress is None and sys.stderr is not None and sys.stderr.isatty()
+    if progress is True or (is_shown and seconds() > _LONG_S):
         return Line()
     return progress if callable(progress) else None
 

@@ -450,12 +450,11 @@ class Scenario:
         Args:
             controller: Matrices (A, B, C, D), an object that has them, such as those of `control.ss`,
                 `control.hinfsyn`, `scipy.signal.StateSpace` and `Linear.compensator`, a transfer function of
-                python-control or SciPy, or a gain K as
-                `control.lqr` returns it, for u = -K x. About one axis its inputs are the error of the angle
-                (rad) and, if it has two, the error of the rate (rad/s): the goal minus the measured or
-                estimated value. Its output is the command. On three axes a controller of one output acts
-                about each axis, a dict has one each for `roll`, `pitch` and `yaw`, and a controller with
-                three outputs acts about all axes together.
+                python-control or SciPy, or a gain K as `control.lqr` returns it, for u = -K x. About one axis
+                its inputs are the error of the angle (rad) and, if it has two, the error of the rate (rad/s):
+                the goal minus the measured or estimated value. Its output is the command. On three axes a
+                controller of one output acts about each axis, a dict has one each for `roll`, `pitch` and
+                `yaw`, and a controller with three outputs acts about all axes together.
             period: Sampling period (s) of a continuous-time controller; a discrete-time one has its own.
             method: Discretisation of a continuous-time controller: `zoh`, exact for errors held over a
                 period (`held` in a file), or `tustin`.
@@ -869,7 +868,7 @@ class Scenario:
             fmi: The version of the standard: 3, with exact events, or 2.
             part: `loop`, the closed loop; `plant`, the spacecraft with its sensors and actuators, whose
                 commands are inputs; or `controller`, the laws, whose estimates and references are inputs.
-            library: The library of FMUs; if omitted, that of this package.
+            library: The library of FMUs, or a ZIP archive of it; if omitted, that of this package.
 
         >>> import flexsc, pathlib, tempfile
         >>> scenario = flexsc.Scenario.example("relay-fixed")

@@ -91,11 +91,6 @@ impl Aim {
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
         *self
     }
-
-    fn __repr__(&self) -> String {
-        let (attitude, rate, acceleration) = (self.attitude(), self.rate(), self.acceleration());
-        format!("Aim({attitude:?}, rate={rate:?}, acceleration={acceleration:?})")
-    }
 }
 
 /// Returns three finite numbers.

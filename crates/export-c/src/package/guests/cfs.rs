@@ -10,6 +10,8 @@ use crate::package::{PackageFile, Plan, parameters, text};
 
 /// Longest name of a pipe: cFS keeps 20 bytes of it.
 const LONGEST_PIPE: usize = 19;
+/// Longest name of the file of a table, of which cFS keeps 20 bytes too.
+const LONGEST_FILE: usize = 19;
 /// First number of a topic of the app.
 const FIRST_TOPIC: usize = 0x90;
 
@@ -19,25 +21,20 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
     let pipe: String = prefix.to_uppercase().chars().take(LONGEST_PIPE - "_PIPE".len()).collect();
     let of_config = |name: &str| format!("{app}/config/default_{prefix}_app_{name}.h");
     let file = |path: String, template: &str| text(path, named(template, plan));
-    let has_table = !plan.parameters.is_empty();
-    let checked = " $(APP)/fsw/src/LOWER_parameters.c $(APP)/fsw/tables/LOWER_parameters_tbl.c";
+    let table_name = table_name(plan);
+    let with_table = |text: String| if plan.parameters.is_empty() { String::new() } else { text };
+    let checked = format!(" $(APP)/fsw/src/LOWER_parameters.c $(APP)/fsw/tables/{table_name}.c");
+    let tables = format!("add_cfe_tables(LOWER_app fsw/tables/{table_name}.c)\n");
     let mut files = vec![
         file(
             "cfs/Makefile".to_owned(),
-            &include_str!("../files/cfs/Makefile").replace("MORE", if has_table { checked } else { "" }),
+            &include_str!("../files/cfs/Makefile").replace("MORE", &with_table(checked)),
         ),
         file(
             format!("{app}/CMakeLists.txt"),
             &include_str!("../files/cfs/CMakeLists.txt")
-                .replace("MORE", if has_table { " fsw/src/LOWER_parameters.c" } else { "" })
-                .replace(
-                    "TABLES",
-                    if has_table {
-                        "add_cfe_tables(LOWER_app fsw/tables/LOWER_parameters_tbl.c)\n"
-                    } else {
-                        ""
-                    },
-                ),
+                .replace("MORE", &with_table(" fsw/src/LOWER_parameters.c".to_owned()))
+                .replace("TABLES", &with_table(tables)),
         ),
         file(format!("{app}/arch_build.cmake"), include_str!("../files/cfs/arch_build.cmake")),
         file(format!("{app}/mission_build.cmake"), include_str!("../files/cfs/mission_build.cmake")),
@@ -66,7 +63,7 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
     if let Some(source) = parameters::source(plan) {
         files.extend([
             text(format!("{app}/fsw/src/{prefix}_parameters.c"), source),
-            file(format!("{app}/fsw/tables/{prefix}_parameters_tbl.c"), &table(plan)),
+            file(format!("{app}/fsw/tables/{table_name}.c"), &table(plan)),
             file(
                 "cfs/stubs/cfe_tbl_filedef.h".to_owned(),
                 "/* STUB of the header of tables of cFE: see cfe.h. */\n#include \"cfe.h\"\n",
@@ -76,6 +73,12 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
     files
 }
 
+/// Returns the name of the table's source without its extension; the build of cFS requires that the file of the table has it too.
+fn table_name(plan: &Plan<'_>) -> String {
+    let prefix: String = plan.prefix.chars().take(LONGEST_FILE - "_tbl.tbl".len()).collect();
+    format!("{prefix}_tbl")
+}
+
 /// Returns the table of parameters, with the defaults.
 fn table(plan: &Plan<'_>) -> String {
     let rows: Vec<String> =
@@ -83,8 +86,9 @@ fn table(plan: &Plan<'_>) -> String {
     format!(
         "/* Table of the parameters, which the app validates. */\n#include \"cfe_tbl_filedef.h\"\n\n#include \"LOWER.h\"\n\n\
          extern LOWER_parameters Parameters;\nLOWER_parameters Parameters = {{\n{}\n}};\n\n\
-         CFE_TBL_FILEDEF(Parameters, UPPER_APP.Parameters, Control parameters, LOWER_parameters.tbl)\n",
-        rows.join(",\n")
+         CFE_TBL_FILEDEF(Parameters, UPPER_APP.Parameters, Control parameters, {}.tbl)\n",
+        rows.join(",\n"),
+        table_name(plan)
     )
 }
 
