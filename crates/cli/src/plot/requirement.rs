@@ -133,7 +133,7 @@ fn formula(own: &AssessedRequirement) -> Option<&RequirementFormula> {
 /// Returns the index of the requirement over time with an identifier or a name.
 ///
 /// # Errors
-/// None of that name, with those there are.
+/// A name of no requirement over time.
 pub fn index_of(story: &RunEvents, name: &str) -> Result<usize, CliError> {
     let all = story.scenario.study.requirements.iter().enumerate();
     let mut timed = all.filter(|(_, own)| formula(own).is_some());
@@ -235,26 +235,8 @@ fn requirement_panels(
         })
         .collect();
     if panels.is_empty() {
-        let condition = Expression::Any(flags);
-        let holds = signals.changes(&condition);
-        let ends = holds.iter().skip(1).map(|(at, _)| *at).chain([end]);
-        let steps = holds.iter().zip(ends).flat_map(|((from, holds), to)| {
-            let level = f64::from(u8::from(*holds));
-            [(*from, level), (to, level)]
-        });
-        let steps: Vec<Point> = steps.collect();
-        let y = FigureAxis::exact("condition holds", "", -0.1..1.1);
-        let mut panel =
-            Panel::new(time(shown), y, vec![Layer::new("", colour::BLUE, LayerShape::Line(1.2), steps)]);
-        if let Some(at) = at {
-            panel.layers.push(Layer::new(
-                "",
-                colour::BLACK,
-                LayerShape::Disc,
-                vec![(at, f64::from(u8::from(decided > Some(0.0))))],
-            ));
-        }
-        panels.push(panel);
+        let holds_there = at.map(|at| (at, decided > Some(0.0)));
+        panels.push(condition_panel(signals, &Expression::Any(flags), time(shown), (end, holds_there)));
     }
     for panel in &mut panels {
         let [low, high] = [panel.y.range.start, panel.y.range.end];
@@ -268,6 +250,26 @@ fn requirement_panels(
         first.remark = head;
     }
     panels
+}
+
+/// Returns the panel of a condition of flags up to the end of the run (s), with the instant that decides and whether the
+/// condition holds there.
+fn condition_panel(
+    signals: &OwnSignals<'_>,
+    condition: &Expression,
+    x: FigureAxis,
+    (end, decides): (f64, Option<(f64, bool)>),
+) -> Panel {
+    let level = |holds: bool| f64::from(u8::from(holds));
+    let holds = signals.changes(condition);
+    let ends = holds.iter().skip(1).map(|(at, _)| *at).chain([end]);
+    let steps =
+        holds.iter().zip(ends).flat_map(|((from, holds), to)| [(*from, level(*holds)), (to, level(*holds))]);
+    let mut layers = vec![Layer::new("", colour::BLUE, LayerShape::Line(1.2), steps.collect())];
+    layers.extend(
+        decides.map(|(at, holds)| Layer::new("", colour::BLACK, LayerShape::Disc, vec![(at, level(holds))])),
+    );
+    Panel::new(x, FigureAxis::exact("condition holds", "", -0.1..1.1), layers)
 }
 
 /// Returns the axis of a quantity with its limit: with decades if it has no sign and its values are far apart.

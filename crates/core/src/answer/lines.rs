@@ -89,7 +89,7 @@ impl RunData<'_> {
     /// Returns what else is known of the run.
     pub fn lines(&self) -> Vec<Line> {
         let mut lines = AnswerLines::default();
-        self.own_parts(&mut lines);
+        self.supplied_parts(&mut lines);
         if self.scenario.axis_count() == 3 {
             self.three_axis_lines(&mut lines);
         } else {
@@ -100,7 +100,7 @@ impl RunData<'_> {
     }
 
     /// Adds the roles of parts that a program supplied.
-    fn own_parts(&self, lines: &mut AnswerLines) {
+    fn supplied_parts(&self, lines: &mut AnswerLines) {
         let parts = self.scenario.custom_parts().each();
         if parts.is_empty() {
             return;

@@ -101,12 +101,12 @@ pub fn parameters(system: &ControlSystem) -> Vec<FlightParameter> {
     let mut all = Vec::new();
     match system {
         ControlSystem::Relays(_) => {}
-        ControlSystem::BDot(own) => of_b_dot(&own.laws, None, &mut all),
+        ControlSystem::BDot(own) => add_b_dot(&own.laws, None, &mut all),
         ControlSystem::Sampled(laws) => {
-            of_laws(laws, None, "", &mut all);
-            of_actuation(&laws.actuation, &mut all);
+            add_laws(laws, None, "", &mut all);
+            add_actuation(&laws.actuation, &mut all);
         }
-        ControlSystem::Modes(modes) => of_modes(modes, &mut all),
+        ControlSystem::Modes(modes) => add_modes(modes, &mut all),
     }
     if let Some(unit) = system.estimator() {
         let mut add = |name: &str, about: &str, value: f64, member: &str| {
@@ -125,7 +125,7 @@ pub fn parameters(system: &ControlSystem) -> Vec<FlightParameter> {
     all
 }
 
-fn of_laws(laws: &SampledLaws, mode: Option<&str>, state: &str, all: &mut Vec<FlightParameter>) {
+fn add_laws(laws: &SampledLaws, mode: Option<&str>, state: &str, all: &mut Vec<FlightParameter>) {
     let axes = laws.axis_count();
     for axis in 0..axes {
         for (member, about, value) in law_members(&laws.laws, axis) {
@@ -148,7 +148,7 @@ fn of_laws(laws: &SampledLaws, mode: Option<&str>, state: &str, all: &mut Vec<Fl
     }
 }
 
-fn of_b_dot(laws: &BDotLaws, mode: Option<&str>, all: &mut Vec<FlightParameter>) {
+fn add_b_dot(laws: &BDotLaws, mode: Option<&str>, all: &mut Vec<FlightParameter>) {
     for axis in 0..3 {
         let [gain, moment] = b_dot_names(mode, axis);
         let mut add = |name: String, about: &str, value: f64| {
@@ -159,7 +159,7 @@ fn of_b_dot(laws: &BDotLaws, mode: Option<&str>, all: &mut Vec<FlightParameter>)
     }
 }
 
-fn of_actuation(own: &Actuation, all: &mut Vec<FlightParameter>) {
+fn add_actuation(own: &Actuation, all: &mut Vec<FlightParameter>) {
     let mut add = |name: &str, about: &str, value: f64, running: Option<&str>| {
         let running = running.map(str::to_owned);
         all.push(FlightParameter { name: name.to_owned(), about: about.to_owned(), value, running });
@@ -219,16 +219,16 @@ pub fn thresholds(modes: &ModeSystem) -> Vec<(usize, String)> {
     found
 }
 
-fn of_modes(modes: &ModeSystem, all: &mut Vec<FlightParameter>) {
+fn add_modes(modes: &ModeSystem, all: &mut Vec<FlightParameter>) {
     for mode in &modes.modes {
         if let Some(laws) = mode.start.on_estimates() {
-            of_laws(laws, Some(&mode.name), &format!("law_{}.", mode.name), all);
+            add_laws(laws, Some(&mode.name), &format!("law_{}.", mode.name), all);
         }
         if let Some(laws) = mode.start.b_dot() {
-            of_b_dot(laws, Some(&mode.name), all);
+            add_b_dot(laws, Some(&mode.name), all);
         }
     }
-    of_actuation(&modes.actuation, all);
+    add_actuation(&modes.actuation, all);
     for (step, name) in thresholds(modes) {
         let mut about = "Limit of a comparison with which a mode ends".to_owned();
         let compared = &modes.tables.steps[step];
@@ -246,7 +246,7 @@ fn of_modes(modes: &ModeSystem, all: &mut Vec<FlightParameter>) {
     }
 }
 
-/// Returns the struct of the parameters, for the header.
+/// Returns the C struct `NAME_parameters` for the header; empty without parameters.
 pub fn definition(plan: &Plan<'_>) -> String {
     let mut text = String::new();
     if plan.parameters.is_empty() {

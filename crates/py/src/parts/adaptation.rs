@@ -10,7 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::draws::Draws;
-use super::law::own_time;
+use super::law::duration_of_part;
 use super::object::{Method, Object};
 use super::signals::Signals;
 
@@ -36,7 +36,7 @@ impl PythonAdaptation {
             object: Object::new(part),
             tunes: part.getattr("tunes")?.extract()?,
             objective,
-            window: own_time(part, "window")?,
+            window: duration_of_part(part, "window")?,
             signals: Signals::from_python(part, "adaptation", false)?,
         })
     }

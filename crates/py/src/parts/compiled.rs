@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 
 use super::compiled_arrays::address;
 use super::hold::{PHASES, never};
-use super::law::own_time;
+use super::law::duration_of_part;
 
 /// The function: now and the time since its last call (s), the cause, angle and rate, those of the goal, its states, its hold.
 type Function = unsafe extern "C" fn(f64, f64, f64, f64, f64, f64, f64, *mut f64, *mut f64);
@@ -36,7 +36,7 @@ impl CompiledLaw {
         let address = address(part, "law")?;
         Ok(Self {
             function: from_address(address),
-            period: own_time(part, "period")?,
+            period: duration_of_part(part, "period")?,
             promise: part.getattr("promise")?.extract()?,
             switches: part.getattr("switches")?.extract()?,
             states: part.getattr("states")?.extract()?,

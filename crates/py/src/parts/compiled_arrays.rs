@@ -25,7 +25,7 @@ use pyo3::prelude::*;
 
 use super::disturbance::{no_next_call, points_and_period};
 use super::hold::{PHASES, never};
-use super::law::own_time;
+use super::law::duration_of_part;
 
 /// The function: now and the time since its last call (s), its input, its states, its output.
 type Function = unsafe extern "C" fn(f64, f64, *const f64, *mut f64, *mut f64);
@@ -115,7 +115,7 @@ impl CompiledThreeAxisLaw {
         Ok(Self {
             compiled: Compiled::from_python(part, "law")?,
             command,
-            period: own_time(part, "period")?,
+            period: duration_of_part(part, "period")?,
             promise: part.getattr("promise")?.extract()?,
         })
     }

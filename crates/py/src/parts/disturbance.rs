@@ -11,7 +11,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::draws::Draws;
-use super::law::{own_time, positive};
+use super::law::{duration_of_part, positive};
 use super::object::{Method, Object, numbers, shape};
 use super::reading::Truth;
 use super::signals::Signals;
@@ -144,7 +144,7 @@ pub fn points_and_period(part: &Bound<'_, PyAny>) -> PyResult<(Vec<String>, Opti
     let points = part.getattr("points")?;
     let why = || PyValueError::new_err("disturbance: points must be a sequence of names, such as (\"tip\",)");
     let names = if points.extract::<String>().is_ok() { None } else { points.extract().ok() };
-    Ok((names.ok_or_else(why)?, own_time(part, "period")?))
+    Ok((names.ok_or_else(why)?, duration_of_part(part, "period")?))
 }
 
 impl PythonDisturbance {

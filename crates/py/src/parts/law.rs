@@ -135,7 +135,7 @@ impl PythonLaw {
         };
         Ok(Self {
             object: Object::new(part),
-            period: own_time(part, "period")?,
+            period: duration_of_part(part, "period")?,
             reads: match reads.as_str() {
                 "nothing" => EstimateNeeds::Nothing,
                 "field" => EstimateNeeds::Field,
@@ -157,7 +157,7 @@ impl PythonLaw {
 }
 
 /// Returns the time that a part has as an attribute: a number (s), a text such as `0.1 s`, or none.
-pub fn own_time(part: &Bound<'_, PyAny>, name: &str) -> PyResult<Option<Span>> {
+pub fn duration_of_part(part: &Bound<'_, PyAny>, name: &str) -> PyResult<Option<Span>> {
     let given = part.getattr(name)?;
     if given.is_none() {
         return Ok(None);

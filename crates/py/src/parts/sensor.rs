@@ -10,7 +10,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::draws::Draws;
-use super::law::own_time;
+use super::law::duration_of_part;
 use super::object::{Method, Object, shape};
 use super::reading::{Reading, Truth};
 use super::signals::Signals;
@@ -41,7 +41,7 @@ impl PythonSensor {
 /// Returns the period of a sensor.
 fn period(part: &Bound<'_, PyAny>) -> PyResult<Span> {
     let why = "sensor: period, the time (s) between samples, must be given";
-    let found = if part.hasattr("period")? { own_time(part, "period")? } else { None };
+    let found = if part.hasattr("period")? { duration_of_part(part, "period")? } else { None };
     found.ok_or_else(|| PyTypeError::new_err(why))
 }
 

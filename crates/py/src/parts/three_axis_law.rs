@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 
 use super::hold::{never, phase};
 use super::instant::{Instant, span};
-use super::law::{Authority, kept, own_time};
+use super::law::{Authority, duration_of_part, kept};
 use super::object::{Method, Object, numbers, shape};
 use super::reading::{Four, Three};
 use super::signals::Signals;
@@ -224,7 +224,7 @@ impl PythonThreeAxisLaw {
         };
         Ok(Self {
             object: Object::new(part),
-            period: own_time(part, "period")?,
+            period: duration_of_part(part, "period")?,
             promise: part.getattr("promise")?.extract()?,
             tunable: tunable.try_iter()?.map(number).collect::<PyResult<_>>()?,
             signals: Signals::from_python(part, role, false)?,

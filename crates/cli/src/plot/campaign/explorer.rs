@@ -28,11 +28,11 @@ pub fn page(runs: &CampaignRuns, directory: &Path, units: ReaderUnits) -> Result
     }
     let varying = |metric: &&MetricColumn| metric.varies() || metric.requirement.is_some();
     let metrics: Vec<Json> =
-        runs.metrics.iter().filter(varying).map(|metric| metric_data(runs, metric, units)).collect();
+        runs.metrics.iter().filter(varying).map(|metric| metric_json(runs, metric, units)).collect();
     if metrics.is_empty() {
         return Err(wrong("no metric varies from run to run".to_owned()));
     }
-    let columns: Vec<Json> = runs.keys.iter().map(|key| key_data(runs, key, units)).chain(metrics).collect();
+    let columns: Vec<Json> = runs.keys.iter().map(|key| key_json(runs, key, units)).chain(metrics).collect();
     let run = |index: usize| {
         json!({
             "number": runs.numbers[index], "error": runs.errors[index],
@@ -57,23 +57,23 @@ fn largest(values: &[f64]) -> f64 {
 }
 
 /// Returns a column of the page: name, label, and values in a unit.
-fn column_data(name: &str, label: &str, unit: &ReaderUnit, values: &[f64]) -> Json {
+fn column_json(name: &str, label: &str, unit: &ReaderUnit, values: &[f64]) -> Json {
     let shown: Vec<Json> = values.iter().map(|value| json!(unit.value(*value))).collect();
     json!({ "name": name, "label": label, "unit": unit.name, "values": shown, "limit": null, "isKey": false })
 }
 
 /// Returns a key in the unit of readers.
-fn key_data(runs: &CampaignRuns, key: &CampaignKey, units: ReaderUnits) -> Json {
+fn key_json(runs: &CampaignRuns, key: &CampaignKey, units: ReaderUnits) -> Json {
     let most = largest(&key.values);
     let of_key = |(scenario, _): &(Scenario, _)| scenario.reader_unit(&key.name, most, units);
     let unit = runs.scenario.as_ref().map_or_else(|| units.fitting(most, ""), of_key);
-    let mut data = column_data(&key.name, &key.name, &unit, &key.values);
+    let mut data = column_json(&key.name, &key.name, &unit, &key.values);
     data["isKey"] = json!(true);
     data
 }
 
 /// Returns a metric in the unit of its limit, or else in that of readers, with the order of its values from good to bad.
-fn metric_data(runs: &CampaignRuns, metric: &MetricColumn, units: ReaderUnits) -> Json {
+fn metric_json(runs: &CampaignRuns, metric: &MetricColumn, units: ReaderUnits) -> Json {
     let (label, si) = metric.label();
     let required = runs.required(metric);
     let unit = match &required {
@@ -82,7 +82,7 @@ fn metric_data(runs: &CampaignRuns, metric: &MetricColumn, units: ReaderUnits) -
         }
         _ => units.for_metric(&metric.name, largest(&metric.values), si),
     };
-    let mut data = column_data(&metric.name, &label, &unit, &metric.values);
+    let mut data = column_json(&metric.name, &label, &unit, &metric.values);
     data["limit"] = json!(required.map(|own| unit.value(own.limit)));
     let order: Vec<Json> = (0..metric.values.len())
         .map(|index| json!(worst::badness(metric, index).map_or(-1.0, |bad| bad.min(1e300))))
