@@ -290,6 +290,10 @@ fn drawn_over(
             story.requirements.push(requirement::index_of(&story, name)?);
         }
     }
+    let is_of_all = |name: &FigureName| matches!(name, FigureName::Kind(kind) if kind.name() == requirement::SPEC.name);
+    if asked.iter().any(is_of_all) {
+        story.requirements.clear();
+    }
     let usual = FigureKind::usual_in(&story);
     let wanted = if kinds.is_empty() { &usual } else { &kinds };
     let chosen = figure_kind::select(wanted, &FigureKind::all_in(&story)).map_err(|(missing, there)| {
