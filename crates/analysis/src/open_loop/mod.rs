@@ -28,6 +28,7 @@ pub use transfer::TransferMatrices;
 
 use super::linear_loop::LinearLoop;
 use super::linear_model::{LinearModel, Signal};
+use super::noise::mirror_states::MirrorStates;
 use super::state_space::StateSpaceModel;
 use flexsc_scenario::Scenario;
 
@@ -89,6 +90,8 @@ pub(crate) struct LoopParts<'a> {
     pub parts: LinearLoop,
     pub law: AxisLaws,
     pub opened: LoopBreak,
+    /// Fine mirrors among the states of the body; empty where none are.
+    pub mirrors: Vec<MirrorStates>,
 }
 
 /// Linear model of the body, as matrices.
@@ -179,7 +182,7 @@ impl<'a> LoopParts<'a> {
         let actuators = actuation::combined_response(scenario, axes, delay)?;
         let parts = LinearLoop::from_scenario(scenario)?;
         let law = AxisLaws::new(scenario, &body)?;
-        Ok(Self { scenario, body, actuators, parts, law, opened })
+        Ok(Self { scenario, body, actuators, parts, law, opened, mirrors: Vec::new() })
     }
 
     /// Returns the parts of the same loop, cut open at a point.
