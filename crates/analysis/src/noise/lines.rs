@@ -21,7 +21,7 @@ use super::sample_times::SamplePlace;
 use super::schedule::PeriodTimes;
 use crate::margins::frequency_response::{modulus, unit_circle};
 use crate::open_loop::attitude_rows::seconds;
-use crate::open_loop::{BodyMatrices, LoopBreak, LoopParts};
+use crate::open_loop::{LoopBreak, LoopParts};
 use flexsc_scenario::Scenario;
 
 /// Load on the states of the body, cosine cos w t + sine sin w t, as columns of their rate of change.
@@ -163,9 +163,7 @@ impl<'a> LineLoop<'a> {
     pub fn motion(&self, frequency: f64, load: &SineLoad) -> Result<TurningMotion, ConfigError> {
         let whole = with_mirrors(&self.parts);
         let (order, rows) = (whole.body.a.nrows(), outputs(&whole).1);
-        let mut load = load.clone();
-        [&mut load.cosine, &mut load.sine].map(|column| column.resize_vertically_mut(order, 0.0));
-        let driven = driven(&whole, frequency, std::slice::from_ref(&load));
+        let driven = driven(&whole, frequency, std::slice::from_ref(load));
         let period_rows = PeriodRows::driven(&driven, &[], &[order, order + 1])?;
         let state = loop_states(&period_rows, &[order, order + 1], order..order + 2, frequency)?.remove(0);
         let whole = |row: &OutputRow| match row {
@@ -318,28 +316,21 @@ fn driven<'a>(parts: &LoopParts<'a>, frequency: f64, loads: &[SineLoad]) -> Loop
     let mut parts = parts.clone();
     let body = &mut parts.body;
     let order = body.a.nrows();
-    resize(body, order + 2 * loads.len());
+    body.resize(order + 2 * loads.len());
     for (load, SineLoad { cosine, sine }) in loads.iter().enumerate() {
         let place = order + 2 * load;
-        body.a.view_mut((0, place), (order, 1)).copy_from(cosine);
-        body.a.view_mut((0, place + 1), (order, 1)).copy_from(sine);
+        body.a.view_mut((0, place), (cosine.len(), 1)).copy_from(cosine);
+        body.a.view_mut((0, place + 1), (sine.len(), 1)).copy_from(sine);
         (body.a[(place, place + 1)], body.a[(place + 1, place)]) = (-frequency, frequency);
     }
     parts
-}
-
-/// Adds states without effect to a body, up to a number of states.
-pub(super) fn resize(body: &mut BodyMatrices, size: usize) {
-    body.a.resize_mut(size, size, 0.0);
-    body.b.resize_vertically_mut(size, 0.0);
-    body.c.resize_horizontally_mut(size, 0.0);
 }
 
 /// Adds two states that meter an output y at a frequency w: q' = j w q + y, so that q exp(-j w t) is the integral of
 /// y exp(-j w t).
 fn add_meter(parts: &mut LoopParts<'_>, row: &RowDVector<f64>, frequency: f64) {
     let place = parts.body.a.nrows();
-    resize(&mut parts.body, place + 2);
+    parts.body.resize(place + 2);
     let a = &mut parts.body.a;
     a.view_mut((place, 0), (1, row.len())).copy_from(row);
     (a[(place, place + 1)], a[(place + 1, place)]) = (-frequency, frequency);

@@ -3,7 +3,6 @@
 use flexsc_numerics::attitude::Vector;
 use nalgebra::{Complex, DMatrix, RowDVector};
 
-use super::lines::resize;
 use crate::fine_mirror::{MirrorLoop, mirrors};
 use crate::linear_model::Signal;
 use crate::margins::frequency_response::modulus;
@@ -69,7 +68,7 @@ pub fn with_mirrors<'a>(parts: &LoopParts<'a>) -> LoopParts<'a> {
             axes: sight.across(),
             first,
         };
-        resize(&mut parts.body, first + 2 * own.count());
+        parts.body.resize(first + 2 * own.count());
         let a = &mut parts.body.a;
         let (frequency, damping) = (mirror.frequency.get(), mirror.damping.get());
         for (axis, about) in own.axes.iter().enumerate() {

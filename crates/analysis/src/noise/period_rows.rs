@@ -331,7 +331,7 @@ impl LoopRows {
             let (errors, rounding) = self.errors(now, draws, size);
             self.end_exposures(parts, now, draws, size);
             if let ControllerRows::Filter { filter, .. } = &mut self.controller {
-                filter.act(now, &self.body, &errors);
+                filter.act(now, &mut self.body, &errors);
             }
             if now % schedule.step == 0 {
                 self.command = self.sample(parts, now, &errors);
