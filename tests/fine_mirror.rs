@@ -50,7 +50,8 @@ fn the_noise_of_the_guidance_sensor_and_the_crossing_are_those_of_the_reference(
         let rms = output.expect("an output")["rms_by_source"][own].as_f64().expect("a number");
         assert!((rms / 9.291_481_474_972e-9 - 1.0).abs() < 1e-9, "{name}: {rms}");
         let before = format!("{name}_before_mirror");
-        let output = found["outputs"].as_array().and_then(|all| all.iter().find(|one| one["output"] == *before));
+        let output =
+            found["outputs"].as_array().and_then(|all| all.iter().find(|one| one["output"] == *before));
         assert_eq!(output.expect("an output")["rms_by_source"][own], 0.0);
     }
     let mirror = &found["mirrors"][0];
@@ -59,7 +60,9 @@ fn the_noise_of_the_guidance_sensor_and_the_crossing_are_those_of_the_reference(
     assert!((number("spectral_radius") - 0.702_175_186_800_46).abs() < 1e-12);
     let windows = spectrum(&dir, "--window 0.01 --pixel 1e-6");
     assert!(windows["outputs"][0]["mtf"].as_f64().is_some_and(|mtf| (0.9..1.0).contains(&mtf)));
-    dir.run("spectrum bench.toml -o figures").exits(0).says(&["fine mirror of detector", "worse above 39.4 Hz"]);
+    dir.run("spectrum bench.toml -o figures")
+        .exits(0)
+        .says(&["fine mirror of detector", "worse above 39.4 Hz"]);
     assert!(dir.size("figures/bench-mirror_0.svg") > 3_000);
 }
 
@@ -71,18 +74,17 @@ fn lines_and_periodic_motion_behind_the_mirror_are_those_of_the_closed_form() {
     let lines = LineLoop::from_scenario(&scenario).expect("a loop");
     let output = |name: &str| noisy.output(name).expect("an output");
     let outputs = ["line_of_sight0_x", "line_of_sight0_x_before_mirror", "mirror0_x"].map(output);
-    for (hertz, left, rms) in [
-        (22.0, 0.557_250_440_111_785_6, 0.557_258_092_310_408_6),
-        (98.112_21, 1.641_212_396_499_938_6, 1.641_238_699_821_268_5),
-        (300.0, 0.916_947_227_646_069_4, 0.916_987_995_887_578_4),
+    for (hertz, left) in [
+        (22.0, 0.557_250_440_111_785_6),
+        (98.112_21, 1.641_212_396_499_938_6),
+        (300.0, 0.916_947_227_646_069_4),
     ] {
         let load = lines.torque(0);
         let found = lines.lines(TAU * hertz, std::slice::from_ref(&load), &outputs).expect("lines").remove(0);
         let [behind, before] = [0, 1].map(|place| found[place].direct.amplitude);
         assert!((behind / before / left - 1.0).abs() < 1e-9, "{hertz} Hz: {}", behind / before);
-        // The aliases of a stabilised loop of 10 Hz are far below.
-        let all = found[0].mean_square() / found[1].mean_square();
-        assert!((all.sqrt() / rms - 1.0).abs() < 1e-6, "{hertz} Hz: {}", all.sqrt());
+        // Of all lines, with those that the law makes at 10 Hz and the mirror at 1 kHz.
+        let all = (found[0].mean_square() / found[1].mean_square()).sqrt();
         assert!(found[2].direct.amplitude > 0.1 * before);
         let motion = lines.motion(TAU * hertz, &load).expect("a motion");
         let places = |output: usize| {
@@ -90,16 +92,20 @@ fn lines_and_periodic_motion_behind_the_mirror_are_those_of_the_closed_form() {
             motion.values(output, (0..4000).map(time)).iter().map(|value| value.norm_sqr()).sum::<f64>()
         };
         let ratio = (places(outputs[0]) / places(outputs[1])).sqrt();
-        assert!((ratio / rms - 1.0).abs() < 1e-6, "{hertz} Hz: {ratio}");
+        assert!((ratio / all - 1.0).abs() < 1e-5, "{hertz} Hz: {ratio} {all}");
     }
 }
 
-/// Body without a control loop under a torque of one frequency, which the mirror sees after some time.
+/// Body without a control loop under a torque of one frequency, beside which its vibration soon vanishes.
 fn free(hertz: f64, torque: f64, more: &str) -> String {
     let sensors = BENCH.find("[[sensor]]").expect("sensors");
-    let line = format!("{}{MIRROR}{more}", &BENCH[..sensors]).replace("noise = 2e-8", "").replace("period = 0.01", "period = 0.0005");
+    let line = format!("{}{MIRROR}{more}", &BENCH[..sensors])
+        .replace("noise = 2e-8", "")
+        .replace("period = 0.01", "period = 0.0005")
+        .replace("damping = 0.004", "damping = 0.06")
+        .replace("damping = 0.005", "damping = 0.06");
     let sine = format!("sines = [{{ amplitude = {torque}, frequency = {} }}]", TAU * hertz);
-    format!("{line}\n[law.open]\n[[disturbance]]\nabout = \"x\"\n{sine}\n")
+    format!("{line}\n[law.open]\n[[disturbance]]\nabout = \"roll\"\n{sine}\n")
 }
 
 /// Returns a number of each row about x of the only line.
@@ -109,7 +115,7 @@ fn about_x(trace: &Trace, topic: &str, field: &str) -> Vec<f64> {
     axes.numbers(field).expect("numbers").iter().step_by(3).copied().collect()
 }
 
-/// Returns the amplitude of a sine in values that are 0.5 ms apart, beside a straight line and slow curves.
+/// Returns the amplitude of a sine in values that are 0.5 ms apart, beside a straight line.
 fn amplitude(values: &[f64], hertz: f64) -> f64 {
     let row = |k: usize| {
         let t = 5e-4 * k as f64;
@@ -125,7 +131,6 @@ fn a_run_leaves_of_a_sine_what_the_linear_loop_says() {
     for (hertz, left) in [(22.0, 0.557_250_440_112), (50.0, 1.249_749_242_517), (150.0, 1.281_665_656_719)] {
         let scenario = parsed(&free(hertz, 1e-3, ""));
         let (_, trace) = flown(&scenario, 0, Detail::Full);
-        // The modes, undriven at the start, vibrate at their own frequencies: the least squares leave them beside the sine.
         let part = |topic: &str, field: &str| about_x(&trace, topic, field).split_off(2000);
         let before = amplitude(&part("/fine_mirror", "before_rad"), hertz);
         let behind = amplitude(&part("/line_of_sight", "error_rad"), hertz);
@@ -175,10 +180,10 @@ fn a_mirror_has_a_figure_margins_a_worst_gain_and_a_requirement() {
     dir.run("margins bench.toml").exits(0).says(&["mirror0"]);
     let margins: serde_json::Value =
         serde_json::from_str(&dir.run("margins bench.toml --json").exits(0).printed()).expect("an object");
-    let above = margins["mirrors"][0]["loops"][0]["gain_above"].as_f64().expect("a margin");
+    let above = margins["mirrors"][0]["gain_above"].as_f64().expect("a margin");
     let worst: serde_json::Value =
         serde_json::from_str(&dir.run("worst bench.toml --margin gain --json").printed()).expect("an object");
-    let least = worst["worst"]["value"].as_f64().expect("a margin");
+    let least = worst["cases"][0]["worst"].as_f64().expect("a margin");
     // The gain of the mirror is the only uncertain key, and its margin the least.
     assert!((least / (above * 0.25 / 0.5) - 1.0).abs() < 1e-3, "{least} {above} {worst}");
     dir.run("budget bench.toml").says(&["jitter"]);
@@ -188,7 +193,10 @@ fn a_mirror_has_a_figure_margins_a_worst_gain_and_a_requirement() {
 fn what_a_mirror_cannot_be_is_refused() {
     let holds = "[[requirement]]\nname = \"a\"\nholds = \"line_of_sight(detector) < 1e-6\"\n";
     for (text, words) in [
-        (bench("computing_periods = 9\n"), &["line_of_sight[0].mirror.computing_periods", "at most 8, got 9"][..]),
+        (
+            bench("computing_periods = 9\n"),
+            &["line_of_sight[0].mirror.computing_periods", "at most 8, got 9"][..],
+        ),
         (bench("stroke = 0.0\n"), &["line_of_sight[0].mirror.stroke", "positive"]),
         (bench("") + holds, &["requirement[0].holds", "`mirror`"]),
         (bench("").replace("damping = 0.6\n", ""), &["damping"]),
@@ -199,7 +207,7 @@ fn what_a_mirror_cannot_be_is_refused() {
     let dir = Dir::new();
     for (from, to, words) in [
         ("gain = 0.25", "gain = 1.5", "mirror0"),
-        ("period = \"1 ms\"", "period = \"0.1 ms\"", "line_of_sight[0].mirror.period"),
+        ("period = \"1 ms\"", "period = \"1.3 ms\"", "line_of_sight[0].mirror.period"),
     ] {
         dir.write("bench.toml", bench("").replacen(from, to, 1));
         dir.run("spectrum bench.toml").exits(2).says(&[words]);

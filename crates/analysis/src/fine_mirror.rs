@@ -46,7 +46,7 @@ pub struct MirrorAnswer<'a> {
     start: Vector2<Complex<f64>>,
 }
 
-/// What a fine mirror leaves of the motion of a line of sight, over frequency. Stroke and rate are not limited.
+/// Sensitivity of a fine mirror: the motion of a line of sight behind it, relative to that before it, without its limits.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MirrorSensitivity {
     /// Index of the line of sight.
@@ -195,8 +195,10 @@ impl MirrorSensitivity {
         let place = (0..angles.len()).max_by(|a, b| sensitivity[*a].total_cmp(&sensitivity[*b])).unwrap_or(0);
         let (low, high) = (place.saturating_sub(1), (place + 1).min(angles.len() - 1));
         let found = maximum(left, angles[low], angles[high]);
-        let (angle, peak) = if found.1 > sensitivity[place] { found } else { (angles[place], sensitivity[place]) };
-        let rises = (1..angles.len()).find(|place| sensitivity[*place - 1] < 1.0 && sensitivity[*place] >= 1.0);
+        let (angle, peak) =
+            if found.1 > sensitivity[place] { found } else { (angles[place], sensitivity[place]) };
+        let rises =
+            (1..angles.len()).find(|place| sensitivity[*place - 1] < 1.0 && sensitivity[*place] >= 1.0);
         let crossing = rises.map(|place| root(|angle| left(angle) - 1.0, angles[place - 1], angles[place]));
         Self {
             line,
@@ -291,7 +293,12 @@ mod tests {
         for computing_periods in [0, 3] {
             let other = MirrorLoop::new(FineMirror { computing_periods, ..bench.mirror });
             assert!(modulus(other.answer(0.0).error(0)) < 1e-14);
-            assert!((other.spectral_radius() - StabilityMargins::new(&other.open_loop(0)).expect("stable").spectral_radius).abs() < 1e-14);
+            assert!(
+                (other.spectral_radius()
+                    - StabilityMargins::new(&other.open_loop(0)).expect("stable").spectral_radius)
+                    .abs()
+                    < 1e-14
+            );
         }
     }
 
@@ -299,6 +306,9 @@ mod tests {
     fn a_mirror_enlarges_what_is_faster_than_its_crossing() {
         let found = MirrorSensitivity::new((0, bench().mirror), "detector");
         assert!((found.crossing_hz.expect("a crossing") - 39.395_544_78).abs() < 1e-7, "{found:?}");
-        assert!(found.peak > 1.641_212_396_5 && found.frequency_hz.last().is_some_and(|last| (last - 500.0).abs() < 1e-9));
+        assert!(
+            found.peak > 1.641_212_396_5
+                && found.frequency_hz.last().is_some_and(|last| (last - 500.0).abs() < 1e-9)
+        );
     }
 }

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::fine_mirror::mirror_margins;
-use super::margins::{StabilityMargins, UnstableLoop, common_delay};
+use super::margins::{SignalMargins, StabilityMargins, UnstableLoop, common_delay};
 use super::open_loop::{LoopBreak, LoopParts, OpenLoop};
 use super::settling_time::SettlingTime;
 use flexsc_scenario::Scenario;
@@ -29,8 +29,8 @@ pub struct ScenarioMargins {
     #[schemars(extend("x-name" = "settling_times"))]
     pub settling: Vec<SettlingTime>,
     /// Margins of the loops of fine mirrors, cut open at the means of their guidance sensors.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub mirrors: Vec<StabilityMargins>,
+    #[schemars(extend("x-key" = "signal"))]
+    pub mirrors: Vec<SignalMargins>,
 }
 
 /// Reason why a scenario has no margins.
@@ -63,6 +63,7 @@ impl ScenarioMargins {
         let cut = OpenLoop::from_parts(&parts).map_err(MarginsFault::Key)?;
         let stability = StabilityMargins::new(&cut).map_err(MarginsFault::Unstable)?;
         let mirrors = mirror_margins(scenario).map_err(MarginsFault::Unstable)?;
+        let mirrors = mirrors.into_iter().flat_map(|own| own.loops).collect();
         let parts = parts.opened_at(LoopBreak::Command);
         let common_delay_s = common_delay(&parts).map_err(MarginsFault::Key)?;
         let settling = parts.settling_times().unwrap_or_default();

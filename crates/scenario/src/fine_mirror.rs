@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 const MOST_WAITING: usize = 8;
 
 /// Fine mirror behind a line of sight. About each of two axes across the line, its command changes at the end of each period by
-/// `gain` times the mean of the error that is left, over an exposure of a guidance sensor. All angles are those by which the line
-/// of sight turns. Its reaction torque on the body is left out.
+/// `gain` times the mean of the error that is left, over an exposure of a guidance sensor. All angles are rotations of the
+/// line of sight. The reaction torque on the body is left out.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FineMirror {

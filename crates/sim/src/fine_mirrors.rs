@@ -60,13 +60,14 @@ pub struct MirrorReading {
     /// Angle, and command (rad).
     pub angle: Vector,
     pub command: Vector,
-    /// Number of periods so far in which a limit shortened a command.
+    /// Number of periods until then in which a limit shortened a command.
     pub limited: u64,
 }
 
 impl MirrorState {
     fn new(line: usize, (of, mirror): (&LineOfSight, FineMirror), seed: Seed) -> Self {
-        let axis = |about| MirrorAxis { about, state: [0.0; 3], waiting: vec![0.0; mirror.computing_periods] };
+        let axis =
+            |about| MirrorAxis { about, state: [0.0; 3], waiting: vec![0.0; mirror.computing_periods] };
         Self {
             line,
             mirror,

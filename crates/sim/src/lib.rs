@@ -357,7 +357,17 @@ impl Simulation {
     /// Returns the parts of the run for reading, and the recorder, which reads them.
     fn view(&mut self) -> (RunView<'_>, &mut Recorder) {
         let Self {
-            clock, plant, sensors, estimation, guidance, laws, loads, mirrors, operation, recorder, ..
+            clock,
+            plant,
+            sensors,
+            estimation,
+            guidance,
+            laws,
+            loads,
+            mirrors,
+            operation,
+            recorder,
+            ..
         } = self;
         let (now, modes, sky) = (clock.now(), operation.sequence(), &**operation.sky());
         (RunView { now, plant, sensors, estimation, guidance, laws, loads, mirrors, modes, sky }, recorder)

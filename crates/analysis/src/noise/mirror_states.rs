@@ -45,7 +45,7 @@ pub struct MirrorOutput {
 }
 
 /// Returns how a line of sight turns about an axis, as a row over the states of a loop.
-pub fn sight_row(sensitivity: &LineSensitivity, about: &Vector, order: usize) -> RowDVector<f64> {
+pub fn line_row(sensitivity: &LineSensitivity, about: &Vector, order: usize) -> RowDVector<f64> {
     let LineSensitivity { rigid, modes } = sensitivity;
     let mut row = RowDVector::zeros(order);
     row.columns_mut(0, 3).copy_from(&(about.transpose() * rigid));
@@ -76,7 +76,7 @@ pub fn with_mirrors<'a>(parts: &LoopParts<'a>) -> LoopParts<'a> {
             a[(angle, rate)] = 1.0;
             (a[(rate, angle)], a[(rate, rate)]) = (-frequency * frequency, -2.0 * damping * frequency);
             a[(rate, command)] = frequency * frequency;
-            let row = sight_row(&sensitivity, about, first);
+            let row = line_row(&sensitivity, about, first);
             a.view_mut((integral, 0), (1, first)).copy_from(&row);
             a[(integral, angle)] = -1.0;
         }
@@ -115,7 +115,8 @@ impl MirrorStates {
             }
             states.row_mut(integral).fill(0.0);
             let waiting = command + 1..integral;
-            let last = waiting.clone().last().map_or_else(|| mean.clone(), |last| states.row(last).into_owned());
+            let last =
+                waiting.clone().last().map_or_else(|| mean.clone(), |last| states.row(last).into_owned());
             for place in waiting.clone().skip(1).rev() {
                 let before = states.row(place - 1).into_owned();
                 states.set_row(place, &before);

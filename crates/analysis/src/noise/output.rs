@@ -3,7 +3,7 @@
 use flexsc_numerics::attitude::{AXES, Vector};
 use nalgebra::RowDVector;
 
-use super::mirror_states::sight_row;
+use super::mirror_states::line_row;
 use super::motion::OutputRow;
 use crate::linear_model::Signal;
 use crate::open_loop::LoopParts;
@@ -24,7 +24,7 @@ pub fn outputs(parts: &LoopParts<'_>) -> (Vec<Signal>, Vec<OutputRow>) {
         parts.signals().into_iter().enumerate().map(|(axis, signal)| (signal, OutputRow::Command(axis))),
     );
     all.extend(error_rows(parts.scenario, whole));
-    all.extend(line_of_sight_rows(parts, whole));
+    all.extend(line_of_line_rows(parts, whole));
     all.extend((measured..model.outputs.len()).map(|place| (model.outputs[place].clone(), row(place))));
     all.into_iter().unzip()
 }
@@ -45,7 +45,7 @@ fn error_rows(scenario: &Scenario, order: usize) -> Vec<(Signal, OutputRow)> {
 
 /// Returns the error of each line of sight about the axes of the body, of one with a mirror also before the mirror, and the angle
 /// of the mirror. Where a mirror is not among the states of the body, all three have the row before it.
-fn line_of_sight_rows(parts: &LoopParts<'_>, order: usize) -> Vec<(Signal, OutputRow)> {
+fn line_of_line_rows(parts: &LoopParts<'_>, order: usize) -> Vec<(Signal, OutputRow)> {
     let scenario = parts.scenario;
     let Some(body) = scenario.model.three_axis() else { return Vec::new() };
     let mut all = Vec::new();
@@ -54,7 +54,7 @@ fn line_of_sight_rows(parts: &LoopParts<'_>, order: usize) -> Vec<(Signal, Outpu
         let states = parts.mirrors.iter().find(|own| own.line == index);
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let about = Vector::ith(axis, 1.0);
-            let row = sight_row(&sensitivity, &about, order);
+            let row = line_row(&sensitivity, &about, order);
             // A line along an axis has no error about it.
             if row.amax() <= 1e-12 {
                 continue;

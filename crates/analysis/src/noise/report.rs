@@ -59,8 +59,7 @@ pub struct NoiseReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Json>", extend("x-type" = "WheelSpectrum | None"))]
     pub wheels: Option<WheelSpectrum>,
-    /// What the fine mirrors of lines of sight leave of their motion, over frequency.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    /// Sensitivities of the fine mirrors of lines of sight, over frequency.
     #[schemars(extend("x-key" = "line"))]
     pub mirrors: Vec<MirrorSensitivity>,
 }

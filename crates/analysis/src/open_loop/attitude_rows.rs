@@ -153,14 +153,19 @@ impl AttitudeRows {
     /// Returns the rows of the state.
     pub fn rows(&self) -> Vec<&DMatrix<f64>> {
         let exposures = self.exposures.iter().map(|exposure| &exposure.innovation);
-        [&self.angle, &self.bias, &self.rate, &self.mount].into_iter().chain(&self.late).chain(exposures).collect()
+        [&self.angle, &self.bias, &self.rate, &self.mount]
+            .into_iter()
+            .chain(&self.late)
+            .chain(exposures)
+            .collect()
     }
 
     /// Returns the times (fs) at which the filter acts, up to the end of a period that begins at 0.
     pub fn events(&self, whole: i64) -> BTreeSet<i64> {
         let first = self.exposures.last().map_or(0, |oldest| oldest.time);
-        let exposures = || repeated(first, self.sensor.period, whole);
         let half = self.sensor.half;
+        // An exposure about the end of the period begins before it.
+        let exposures = || repeated(first, self.sensor.period, whole + half + 1);
         repeated(0, self.gyro.period, whole)
             .chain(exposures().flat_map(|time| [time - half, time, time + half, self.use_time(time)]))
             .collect()

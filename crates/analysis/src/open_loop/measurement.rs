@@ -44,7 +44,9 @@ pub fn sensor_block(
     if sensor.rate_latency() > Span::ZERO {
         let late = libm::round(sensor.rate_latency().seconds() / period.seconds());
         if sensor.own_period() != Some(period) || late > MOST_LATE {
-            return wrong("has a `latency`, which a linear loop has in periods of the law, at most 100 of them");
+            return wrong(
+                "has a `latency`, which a linear loop has in periods of the law, at most 100 of them",
+            );
         }
         return Ok(late_rates(late as usize, prefixes));
     }

@@ -180,7 +180,7 @@ impl LoopMargins {
         }
         rows.extend(independent_disk.map(|disk| json!({"signal": "all, independent", "disk": disk})));
         let of_attitude = rows.len();
-        rows.extend(self.margins.mirrors.iter().flat_map(|own| &own.loops).map(|one| json!(one)));
+        rows.extend(self.margins.mirrors.iter().map(|one| json!(one)));
         let (first, rest) = MARGINS.split_at(BEFORE_MASK);
         let mask = [column("mask", "mask")];
         let mask = if self.masked.is_some() { &mask[..] } else { &[] };

@@ -8,9 +8,9 @@ use clap::builder::PossibleValue;
 use super::figure_spec::FigureSpec;
 use super::run_events::RunEvents;
 use super::{
-    accelerations, angle, consistency, deflection, drives, envelope, estimate, extra_loop, flywheel,
-    fine_mirror, frequency, gain, gimbals, hinges, line_of_sight, magnetorquers, modes, orbit, outputs, phase_plane,
-    pointing, requirement, three_axis, torque, torques,
+    accelerations, angle, consistency, deflection, drives, envelope, estimate, extra_loop, fine_mirror,
+    flywheel, frequency, gain, gimbals, hinges, line_of_sight, magnetorquers, modes, orbit, outputs,
+    phase_plane, pointing, requirement, three_axis, torque, torques,
 };
 
 /// The figures of logs, in the order in which they are listed and drawn.

@@ -39,8 +39,7 @@ pub fn figures(name: &str, mirrors: &[MirrorSensitivity]) -> Vec<Named> {
 fn figure(name: &str, own: &MirrorSensitivity) -> Figure {
     let x = FigureAxis::decades("frequency", "Hz", own.frequency_hz.iter().copied());
     let y = FigureAxis::decades("behind the mirror / before it", "", own.sensitivity.iter().copied());
-    let points: Vec<Point> =
-        own.frequency_hz.iter().copied().zip(own.sensitivity.iter().copied()).collect();
+    let points: Vec<Point> = own.frequency_hz.iter().copied().zip(own.sensitivity.iter().copied()).collect();
     let ends = [points.first(), points.last()].into_iter().flatten();
     let unity: Vec<Point> = ends.map(|(frequency, _)| (*frequency, 1.0)).collect();
     let layers = vec![

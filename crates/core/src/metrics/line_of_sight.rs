@@ -5,7 +5,8 @@ use flexsc_numerics::time::Instant;
 use flexsc_record::{FineMirrorSample, LineOfSightAxis, LineOfSightSample};
 
 use super::{
-    MIRROR_LIMITED, MIRROR_PEAK, MetricValue, NamedMetric, POINT_DISPLACEMENT, SIGHT_JITTER, SIGHT_PEAK, SIGHT_RMS,
+    MIRROR_LIMITED, MIRROR_PEAK, MetricValue, NamedMetric, POINT_DISPLACEMENT, SIGHT_JITTER, SIGHT_PEAK,
+    SIGHT_RMS,
 };
 use flexsc_scenario::{LineOfSight, Scenario};
 

@@ -36,7 +36,7 @@ rows! {
     FineMirrorSample = "/fine_mirror" at Sample {
         /// Index of the line of sight in the scenario, from 0.
         line: u64,
-        /// Periods of the mirror so far in which its stroke or its rate limited a command.
+        /// Periods of the mirror until then in which its stroke or its rate limited a command.
         limited: u64,
         /// About x, y and z.
         axes: Vec<FineMirrorAxis>,

@@ -23,8 +23,8 @@ use super::guidance::Guidance;
 use super::loads::Loads;
 use super::mode_sky::ModeSky;
 use super::motion_limits::{MotionLimits, modal_rotation};
-use super::plant::Plant;
 use super::mounted_lines::MountedLines;
+use super::plant::Plant;
 use super::run_view::RunView;
 use flexsc_scenario::{RequirementSource, Scenario};
 
