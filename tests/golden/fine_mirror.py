@@ -1,7 +1,7 @@
-"""Reference of tests/fine_mirror.rs and crates/analysis/src/fine_mirror.rs: a mirror that follows the means of a guidance sensor.
+"""Reference of tests/fine_mirror.rs and crates/analysis/src/fine_mirror.rs: a mirror and its guidance sensor.
 
-The mirror's motion over a period by the matrix exponential, means by Gauss-Legendre quadrature, and the noise by an integral over
-the angles of the unit circle. pip install numpy scipy
+The mirror's motion over a period by the matrix exponential, means by Gauss-Legendre quadrature, and the noise
+by an integral over the angles of the unit circle. pip install numpy scipy
 """
 
 import numpy as np
@@ -20,7 +20,7 @@ FLOW = expm(RATES * T)
 
 
 def loop(w):
-    """The line at w, the root mean square of the error, and the mean square of the mirror's angle under noise of 1."""
+    """The line at w, the rms of the error, and the mean square of the mirror's angle under noise of 1."""
     z = np.exp(1j * w * T)
     start = np.linalg.solve(z * np.eye(2) - FLOW[:2, :2], FLOW[:2, 2].astype(complex))
     angle = np.array([(flow[:2, :2] @ start + flow[:2, 2])[0] for flow in FLOWS])
@@ -39,7 +39,9 @@ if __name__ == "__main__":
         line, rms, _ = loop(2 * np.pi * hertz)
         print(hertz, "Hz: line", repr(abs(line)), "rms", repr(rms))
     print("crossing (Hz)", repr(brentq(lambda f: abs(loop(2 * np.pi * f)[0]) - 1, 30, 45, xtol=1e-13)))
-    square = quad(lambda angle: loop(angle / T)[2], 1e-9, np.pi, epsrel=1e-11, limit=400, points=[0.1, 0.3, 0.5])[0]
+    square = quad(
+        lambda angle: loop(angle / T)[2], 1e-9, np.pi, epsrel=1e-11, limit=400, points=[0.1, 0.3, 0.5]
+    )[0]
     print("noise of the mean in the error (rad)", repr(NOISE * np.sqrt(square / np.pi)))
     closed = np.zeros((4, 4))
     # Angle, rate, command, and the mean that waits.

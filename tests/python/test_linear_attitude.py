@@ -164,7 +164,7 @@ def test_a_closed_loop_moves_as_the_simulated_one(name: str, changes: dict[str, 
     at = np.array([np.abs(pointing["time_s"] - time).argmin() for time in times])
     np.testing.assert_allclose(pointing["time_s"][at], times, atol=1e-9)
     found = 2.0 * np.stack([pointing[f"q_{axis}"][at] for axis in "xyz"], axis=1)
-    # The model has an exposure about the start, of which a run has nothing: what it had seen before makes up for it.
+    # The model has an exposure about the start, and a run none: what it had seen before makes up for it.
     exposed = [place for place, name in enumerate(state_names) if name.startswith("exposed_")]
     if exposed:
         parts = np.stack([moved(np.eye(len(state))[place]).ravel() for place in exposed], axis=1)

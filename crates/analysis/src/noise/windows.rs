@@ -74,7 +74,7 @@ pub(super) struct Functional {
 /// Integrals of an output's row, and of the row times the time, over the period and over parts of it.
 pub(super) struct OutputMoments {
     whole: [RowDVector<f64>; 2],
-    /// Those over parts that were asked for, by the bits of their ends.
+    /// Integrals over parts that were asked for, by the bits of their ends.
     parts: RefCell<BTreeMap<[u64; 2], [RowDVector<f64>; 2]>>,
 }
 
