@@ -57,7 +57,7 @@ pub struct MirrorSensitivity {
     pub spectral_radius: f64,
     /// Lowest frequency (Hz) from which on the mirror enlarges the motion; none if it does at no frequency.
     pub crossing_hz: Option<f64>,
-    /// Largest ratio of the motion behind the mirror and before it, and its frequency (Hz).
+    /// Largest ratio of the motion behind the mirror and before it.
     pub peak: f64,
     /// Frequency (Hz) of the largest ratio.
     pub peak_hz: f64,
