@@ -75,11 +75,7 @@ fn lines_and_periodic_motion_behind_the_mirror_are_those_of_the_closed_form() {
     let mirror = MirrorLoop::new(scenario.line_of_sight[0].mirror.expect("a mirror"));
     let output = |name: &str| noisy.output(name).expect("an output");
     let outputs = ["line_of_sight0_x", "line_of_sight0_x_before_mirror", "mirror0_x"].map(output);
-    for (hertz, left) in [
-        (22.0, 0.557_250_440_111_785_6),
-        (98.112_21, 1.641_212_396_499_938_6),
-        (300.0, 0.916_947_227_646_069_4),
-    ] {
+    for (hertz, left) in [(22.0, 0.557_250_440_111_785_6), (98.112_21, 1.641_212_396_499_938_6)] {
         let load = lines.torque(0);
         let found = lines.lines(TAU * hertz, std::slice::from_ref(&load), &outputs).expect("lines").remove(0);
         let [behind, before] = [0, 1].map(|place| found[place].direct.amplitude);
