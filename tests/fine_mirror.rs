@@ -8,7 +8,7 @@ use flexsc_core::analysis::fine_mirror::MirrorLoop;
 use flexsc_core::analysis::noise::{LineLoop, NoisyLoop, SamplePlace};
 use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::record::{Column, Detail, Trace};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::optics::BENCH;
 use crate::traces::flown;
@@ -87,7 +87,7 @@ fn lines_and_periodic_motion_behind_the_mirror_are_those_of_the_closed_form() {
         let motion = lines.motion(TAU * hertz, &load).expect("a motion");
         let places = |output: usize| {
             let time = |k: i64| SamplePlace { period: 0, time: motion.period / 4000 * k };
-            motion.values(output, (0..4000).map(time)).iter().map(|value| value.norm_sqr()).sum::<f64>()
+            motion.values(output, (0..4000).map(time)).iter().map(Complex::norm_sqr).sum::<f64>()
         };
         let ratio = (places(outputs[0]) / places(outputs[1])).sqrt();
         assert!((ratio / all - 1.0).abs() < 1e-5, "{hertz} Hz: {ratio} {all}");
