@@ -65,6 +65,7 @@ mod earth_observer;
 mod envelopes;
 mod exposure;
 mod filters;
+mod fine_mirror;
 mod goals;
 mod isolators;
 mod jets;

@@ -5,6 +5,7 @@ pub mod budget;
 pub mod damping;
 pub mod describing_function;
 pub mod eigenvalues;
+pub mod fine_mirror;
 pub mod identification;
 pub mod limit_cycle;
 pub mod linear_attitude_filter;

@@ -13,6 +13,7 @@ use flexsc_formats::reader_units::number;
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 use serde::Serialize;
 
+use super::mirror_states::{MirrorOutput, with_mirrors};
 use super::motion::{Motion, OutputRow};
 use super::output::outputs;
 use super::period_rows::{PeriodRows, Piece};
@@ -20,7 +21,7 @@ use super::sample_times::SamplePlace;
 use super::schedule::PeriodTimes;
 use crate::margins::frequency_response::{modulus, unit_circle};
 use crate::open_loop::attitude_rows::seconds;
-use crate::open_loop::{BodyMatrices, LoopBreak, LoopParts};
+use crate::open_loop::{LoopBreak, LoopParts};
 use flexsc_scenario::Scenario;
 
 /// Load on the states of the body, cosine cos w t + sine sin w t, as columns of their rate of change.
@@ -65,8 +66,10 @@ impl OutputLines {
 /// Closed loop to which loads that turn are applied.
 pub struct LineLoop<'a> {
     pub(super) parts: LoopParts<'a>,
-    /// Outputs as rows over the states of the body.
+    /// Outputs as rows over the states of the body, before the mirrors of lines of sight.
     rows: Vec<OutputRow>,
+    /// Mirror behind which an output is.
+    mirrors: Vec<Option<MirrorOutput>>,
 }
 
 impl<'a> LineLoop<'a> {
@@ -76,8 +79,9 @@ impl<'a> LineLoop<'a> {
     /// A part that is not linear: its key, and the reason.
     pub fn from_scenario(scenario: &'a Scenario) -> Result<Self, ConfigError> {
         let parts = LoopParts::from_scenario(scenario, LoopBreak::Command)?;
-        let rows = outputs(&parts).1;
-        Ok(Self { parts, rows })
+        let (signals, rows) = outputs(&parts);
+        let mirrors = MirrorOutput::all(scenario, &signals);
+        Ok(Self { parts, rows, mirrors })
     }
 
     /// Returns the load of a torque that turns about one axis of the actuators.
@@ -111,7 +115,7 @@ impl<'a> LineLoop<'a> {
     ) -> Result<Vec<Vec<OutputLines>>, ConfigError> {
         let order = self.parts.body.a.nrows();
         let meters = order + 2 * loads.len();
-        let mut driven = self.driven(frequency, loads);
+        let mut driven = driven(&self.parts, frequency, loads);
         let oscillators: Vec<usize> = (order..meters).collect();
         let turns = self.turns(frequency)?;
         for output in outputs {
@@ -135,11 +139,14 @@ impl<'a> LineLoop<'a> {
             };
             let mut next = meters;
             let lines = outputs.iter().map(|output| match &self.rows[*output] {
-                OutputRow::Body(_) => turns.lines(|place| {
-                    let total = metered(next) + metered(next + 1) * Complex::new(0.0, 1.0);
-                    next += 2;
-                    total * unit_circle(-turns.frequencies[place] * turns.period) / turns.period
-                }),
+                OutputRow::Body(_) => {
+                    let amplitude = |place: usize| {
+                        let total = metered(next) + metered(next + 1) * Complex::new(0.0, 1.0);
+                        next += 2;
+                        total * unit_circle(-turns.frequencies[place] * turns.period) / turns.period
+                    };
+                    turns.lines_behind(self.mirrors[*output].as_ref(), amplitude)
+                }
                 OutputRow::Command(axis) => {
                     turns.lines(|place| turns.command_amplitude(&period_rows.pieces, *axis, &state, place))
                 }
@@ -154,15 +161,16 @@ impl<'a> LineLoop<'a> {
     /// # Errors
     /// See [`Self::lines`].
     pub fn motion(&self, frequency: f64, load: &SineLoad) -> Result<TurningMotion, ConfigError> {
-        let order = self.parts.body.a.nrows();
-        let driven = self.driven(frequency, std::slice::from_ref(load));
+        let whole = with_mirrors(&self.parts);
+        let (order, rows) = (whole.body.a.nrows(), outputs(&whole).1);
+        let driven = driven(&whole, frequency, std::slice::from_ref(load));
         let period_rows = PeriodRows::driven(&driven, &[], &[order, order + 1])?;
         let state = loop_states(&period_rows, &[order, order + 1], order..order + 2, frequency)?.remove(0);
         let whole = |row: &OutputRow| match row {
             OutputRow::Body(row) => OutputRow::Body(row.clone().resize_horizontally(order + 2, 0.0)),
             command @ OutputRow::Command(_) => command.clone(),
         };
-        let rows = self.rows.iter().map(whole).collect();
+        let rows = rows.iter().map(whole).collect();
         let motion = Motion::new((&driven.body.a, &driven.body.b), period_rows.pieces, rows);
         Ok(TurningMotion { motion, state, period: period_rows.period, frequency })
     }
@@ -176,21 +184,6 @@ impl<'a> LineLoop<'a> {
         let turns = (first..=last).filter(|turn| *turn != 0).chain([0]);
         let frequencies = turns.map(|turn| frequency + TAU * turn as f64 / period).collect();
         Ok(LineFrequencies { frequencies, period })
-    }
-
-    /// Returns the parts of the loop with oscillators as further states of the body, two for each load.
-    fn driven(&self, frequency: f64, loads: &[SineLoad]) -> LoopParts<'a> {
-        let mut parts = self.parts.clone();
-        let body = &mut parts.body;
-        let order = body.a.nrows();
-        resize(body, order + 2 * loads.len());
-        for (load, SineLoad { cosine, sine }) in loads.iter().enumerate() {
-            let place = order + 2 * load;
-            body.a.view_mut((0, place), (order, 1)).copy_from(cosine);
-            body.a.view_mut((0, place + 1), (order, 1)).copy_from(sine);
-            (body.a[(place, place + 1)], body.a[(place + 1, place)]) = (-frequency, frequency);
-        }
-        parts
     }
 }
 
@@ -244,6 +237,20 @@ impl LineFrequencies {
         let direct = all.pop().unwrap_or_default();
         all.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
         OutputLines { direct, aliases: all }
+    }
+
+    /// Returns the lines of an output behind a mirror, if it is behind one, whose complex amplitudes before the mirror a function
+    /// gives for each frequency.
+    fn lines_behind(
+        &self,
+        mirror: Option<&MirrorOutput>,
+        mut amplitude: impl FnMut(usize) -> Complex<f64>,
+    ) -> OutputLines {
+        let Some(mirror) = mirror else { return self.lines(amplitude) };
+        let each = self.frequencies.iter().enumerate();
+        let before: Vec<_> = each.map(|(place, frequency)| (*frequency, amplitude(place))).collect();
+        let (frequencies, amplitudes): (Vec<f64>, Vec<_>) = mirror.lines(&before).into_iter().unzip();
+        Self { frequencies, period: self.period }.lines(|place| amplitudes[place])
     }
 
     /// Returns the amplitude of a command, which is constant in each piece.
@@ -304,18 +311,26 @@ fn loop_states(
     oscillators.chunks(2).map(state_under).collect()
 }
 
-/// Adds states without effect to a body, up to a number of states.
-fn resize(body: &mut BodyMatrices, size: usize) {
-    body.a.resize_mut(size, size, 0.0);
-    body.b.resize_vertically_mut(size, 0.0);
-    body.c.resize_horizontally_mut(size, 0.0);
+/// Returns the parts of a loop with oscillators as further states of the body, two for each load.
+fn driven<'a>(parts: &LoopParts<'a>, frequency: f64, loads: &[SineLoad]) -> LoopParts<'a> {
+    let mut parts = parts.clone();
+    let body = &mut parts.body;
+    let order = body.a.nrows();
+    body.resize(order + 2 * loads.len());
+    for (load, SineLoad { cosine, sine }) in loads.iter().enumerate() {
+        let place = order + 2 * load;
+        body.a.view_mut((0, place), (cosine.len(), 1)).copy_from(cosine);
+        body.a.view_mut((0, place + 1), (sine.len(), 1)).copy_from(sine);
+        (body.a[(place, place + 1)], body.a[(place + 1, place)]) = (-frequency, frequency);
+    }
+    parts
 }
 
 /// Adds two states that meter an output y at a frequency w: q' = j w q + y, so that q exp(-j w t) is the integral of
 /// y exp(-j w t).
 fn add_meter(parts: &mut LoopParts<'_>, row: &RowDVector<f64>, frequency: f64) {
     let place = parts.body.a.nrows();
-    resize(&mut parts.body, place + 2);
+    parts.body.resize(place + 2);
     let a = &mut parts.body.a;
     a.view_mut((place, 0), (1, row.len())).copy_from(row);
     (a[(place, place + 1)], a[(place + 1, place)]) = (-frequency, frequency);

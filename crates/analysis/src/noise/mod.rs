@@ -20,6 +20,7 @@ mod density;
 mod image_contrast;
 mod imbalance;
 mod lines;
+pub(crate) mod mirror_states;
 mod motion;
 mod noisy_loop;
 mod output;

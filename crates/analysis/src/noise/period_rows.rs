@@ -248,9 +248,24 @@ impl LoopRows {
                 NoiseEntry::Torque { deviation, .. } => {
                     self.memory[index] = drawn(&DMatrix::from_element(1, 1, *deviation));
                 }
+                NoiseEntry::Mirror { .. } => {}
             }
         }
         (errors, command)
+    }
+
+    /// Ends the exposures of fine mirrors that end at a time (fs).
+    fn end_exposures(&mut self, parts: &LoopParts<'_>, now: i64, draws: &Draws<'_>, size: usize) {
+        for own in parts.mirrors.iter().filter(|own| now % own.period == 0) {
+            let noise = draws.sources.iter().enumerate().find_map(|(index, source)| match source.entry {
+                NoiseEntry::Mirror { line, deviation } if line == own.line => {
+                    let each = DMatrix::from_diagonal_element(2, 2, deviation);
+                    Some(placed(&each, size + draws.column(index, now)?, self.body.ncols()))
+                }
+                _ => None,
+            });
+            own.end_exposure(&mut self.body, noise.as_ref());
+        }
     }
 
     /// Returns the torques: those of the commands, and those that are drawn.
@@ -314,8 +329,9 @@ impl LoopRows {
         for pair in instants.windows(2) {
             let (now, length) = (pair[0], pair[1] - pair[0]);
             let (errors, rounding) = self.errors(now, draws, size);
+            self.end_exposures(parts, now, draws, size);
             if let ControllerRows::Filter { filter, .. } = &mut self.controller {
-                filter.act(now, &self.body, &errors);
+                filter.act(now, &mut self.body, &errors);
             }
             if now % schedule.step == 0 {
                 self.command = self.sample(parts, now, &errors);

@@ -13,6 +13,7 @@ use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, NoisyLoop};
 use super::window_rms::WindowRms;
 use super::windows::Window;
+use crate::fine_mirror::MirrorSensitivity;
 use flexsc_scenario::Scenario;
 
 /// Largest number of speeds of the wheels.
@@ -58,6 +59,9 @@ pub struct NoiseReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Json>", extend("x-type" = "WheelSpectrum | None"))]
     pub wheels: Option<WheelSpectrum>,
+    /// Sensitivities of the fine mirrors of lines of sight, over frequency.
+    #[schemars(extend("x-key" = "line"))]
+    pub mirrors: Vec<MirrorSensitivity>,
 }
 
 /// Noise of an output, in its unit.
@@ -110,6 +114,7 @@ impl NoiseReport {
         }
         let mut report = Self::new(&noisy, &outputs, request.window).map_err(NoiseError::Request)?;
         report.wheels = wheels;
+        report.mirrors = MirrorSensitivity::all(scenario);
         if let Some(pixel) = request.pixel {
             report.add_contrast(&noisy, &outputs, pixel).map_err(NoiseError::Request)?;
         }
@@ -176,6 +181,7 @@ impl NoiseReport {
             frequency_hz,
             outputs: found,
             wheels: None,
+            mirrors: Vec::new(),
         })
     }
 }

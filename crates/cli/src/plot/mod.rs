@@ -18,6 +18,7 @@ mod extra_loop;
 mod figure_kind;
 mod figure_name;
 mod figure_spec;
+mod fine_mirror;
 mod flywheel;
 mod frequency;
 mod gain;

@@ -1,6 +1,7 @@
 //! `flexsc spectrum`: noise of the outputs of a loop, exact from its linear model, and lines of its wheels.
 
 mod figures;
+mod mirrors;
 mod named_mode;
 mod peaks;
 mod required_index;
@@ -297,6 +298,7 @@ impl Results for SpectrumResults {
         let mut all = figures::densities(&self.name, &self.report, &self.welch);
         let windows = (&self.required[..], self.window_s);
         all.extend(waterfall::figures(&self.name, &self.report, windows, &self.modes));
+        all.extend(mirrors::figures(&self.name, &self.report.mirrors));
         all
     }
 
@@ -339,6 +341,7 @@ impl Results for SpectrumResults {
             print_table(&rows, 1);
             self.print_windows();
         }
+        mirrors::print(&self.report.mirrors, self.units);
         self.print_contrast();
         self.print_welch();
         if let Some(wheels) = &self.report.wheels {

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 
 use super::box_search::{Assessed, BoxSearch};
 use super::{UncertainKey, WorstCase, WorstCaseFault, uncertain_box};
+use flexsc_analysis::fine_mirror::mirror_margins;
 use flexsc_analysis::margins::{StabilityMargins, UnstableLoop};
 use flexsc_analysis::open_loop::LoopBreak;
 use flexsc_analysis::structured_tuning::ScenarioLoops;
@@ -107,12 +108,20 @@ impl MarginSearch {
         // What the loop of the scenario itself lacks, no other point has.
         let nominal: Vec<f64> = ranges.keys.iter().map(UncertainKey::nominal_number).collect();
         loops.loop_at(&nominal, 0).map_err(WorstCaseFault::Request)?;
+        let has_mirrors = scenario.line_of_sight.iter().any(|line| line.mirror.is_some());
         let (mut failed, mut first_failure) = (0, None);
         let at = |parts: &Vec<f64>| -> Result<Assessed, String> {
             let opened = loops.loop_at(&numbers(parts), 0)?;
-            Ok(match StabilityMargins::new(&opened) {
-                Ok(margins) => {
-                    let value = self.kind.least_margin(&margins);
+            let mirrors = if has_mirrors {
+                mirror_margins(&loops.scenario(&numbers(parts), 0)?)
+            } else {
+                Ok(Vec::new())
+            };
+            let all = StabilityMargins::new(&opened).and_then(|own| Ok([vec![own], mirrors?].concat()));
+            Ok(match all {
+                Ok(all) => {
+                    let each = all.iter().map(|margins| self.kind.least_margin(margins));
+                    let value = each.fold(f64::INFINITY, f64::min);
                     Assessed { badness: -value.min(UNSTABLE), value }
                 }
                 Err(UnstableLoop { spectral_radius, .. }) => {

@@ -87,6 +87,7 @@ __all__ = [
     "FaultKind",
     "FilterFormKind",
     "FilterKind",
+    "FineMirror",
     "Friction",
     "Gain",
     "Gate",
@@ -1671,6 +1672,46 @@ class ExtendedKalman(Part):
     """
 
 
+class FineMirror(Part):
+    """Fine mirror behind a line of sight. About each of two axes across the line, its command changes at
+    the end of each period by `gain` times the mean of the error that is left, over an exposure of a
+    guidance sensor. All angles are rotations of the line of sight. The reaction torque on the body is
+    left out.
+
+    Args:
+        frequency: Natural frequency of the mirror on its drive (rad/s).
+        damping: Damping ratio of the mirror on its drive: 1 critical.
+        period: Period of its loop (s), over the whole of which the guidance sensor exposes.
+        gain: Part of the mean error of an exposure by which the command changes.
+        computing_periods: Whole periods from the end of an exposure to the change of the command that it
+            causes. Default: 1.
+        noise: Standard deviation of the noise of a mean over an exposure, about each axis (rad). Default:
+            0.0.
+        stroke: Largest command of either sign about each axis (rad); default: no limit.
+        rate: Largest change of the command about each axis in a period, over the period (rad/s); default:
+            no limit.
+    """
+
+    frequency: float
+    """Natural frequency of the mirror on its drive (rad/s)."""
+    damping: float
+    """Damping ratio of the mirror on its drive: 1 critical."""
+    period: float
+    """Period of its loop (s), over the whole of which the guidance sensor exposes."""
+    gain: float
+    """Part of the mean error of an exposure by which the command changes."""
+    computing_periods: int = DEFAULT
+    """Whole periods from the end of an exposure to the change of the command that it causes. Default: 1."""
+    noise: float = DEFAULT
+    """Standard deviation of the noise of a mean over an exposure, about each axis (rad). Default: 0.0."""
+    stroke: float = DEFAULT
+    """Largest command of either sign about each axis (rad); default: no limit."""
+    rate: float = DEFAULT
+    """Largest change of the command about each axis in a period, over the period (rad/s); default: no
+    limit.
+    """
+
+
 class Friction(Part):
     """Bearing friction: c Omega + t sgn Omega for a turning wheel, and up to the breakaway torque for a
     wheel at rest.
@@ -2272,6 +2313,8 @@ class LineOfSight(Part):
             undeformed.
         optics: Mirrors, lenses and detectors whose motions add up to that of the line of sight, along an
             axis of the body; default: it turns with `point`.
+        mirror: Mirror that turns the image back, in a loop of its own; errors of the line of sight are then
+            those behind it.
         window: Start and end (s) of the interval in which it is assessed; default: the whole run.
         jitter_window: Length (s) of the windows within which jitter is assessed, such as an exposure time:
             the deviation from the mean over each window. Default: no jitter is assessed.
@@ -2286,6 +2329,10 @@ class LineOfSight(Part):
     optics: Sequence[OpticalElement] = DEFAULT
     """Mirrors, lenses and detectors whose motions add up to that of the line of sight, along an axis of the
     body; default: it turns with `point`.
+    """
+    mirror: FineMirror = DEFAULT
+    """Mirror that turns the image back, in a loop of its own; errors of the line of sight are then those
+    behind it.
     """
     window: Vector = DEFAULT
     """Start and end (s) of the interval in which it is assessed; default: the whole run."""
