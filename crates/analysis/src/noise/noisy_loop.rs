@@ -278,7 +278,7 @@ impl NoisyLoop {
 }
 
 /// Returns the spectral radius of the closed loop.
-fn stable_radius(parts: &LoopParts<'_>) -> Result<f64, NoiseError> {
+pub(super) fn stable_radius(parts: &LoopParts<'_>) -> Result<f64, NoiseError> {
     let opened = OpenLoop::from_parts(parts)?;
     let first = opened.signals.first().map_or("", |signal| &signal.name);
     let failed = || NoiseError::Unstable(UnstableLoop::with_unknown_poles(first));
