@@ -200,8 +200,8 @@ impl Scenario {
     }
 
     fn draw(&self, run: u64) -> PyResult<Self> {
-        let campaign = Campaign::new(self.inner.clone(), &self.origin, []).map_err(scenario_error)?;
-        Self::new(&self.origin, campaign.run(run).map(|run| run.scenario))
+        let campaign = Campaign::from_unchecked_points(self.inner.clone(), &self.origin, Design::default());
+        Self::new(&self.origin, campaign.map_err(scenario_error)?.run(run).map(|run| run.scenario))
     }
 
     #[getter]

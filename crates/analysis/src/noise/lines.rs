@@ -96,7 +96,7 @@ impl<'a> LineLoop<'a> {
     ///
     /// # Errors
     /// A name that no output has: the names that there are.
-    pub(super) fn output(&self, name: &str) -> Result<usize, String> {
+    pub fn output(&self, name: &str) -> Result<usize, String> {
         output_index(&self.signals, name)
     }
 
