@@ -265,3 +265,99 @@ fn worst_speeds_are_found() {
         close(largest, amplitude, 1e-3, &format!("{hertz} Hz"));
     }
 }
+
+/// Returns the keys of a bench whose mount is uncertain.
+fn uncertain() -> String {
+    let ranges = "\n[uncertain]\n\"appendage[1].mount.rocking\" = { uniform = [\"26 Hz\", \"34 Hz\"] }\n\
+                  \"appendage[1].mount.damping\" = { uniform = [0.03, 0.09] }\n";
+    bench(&[]) + ranges
+}
+
+/// The worst of the mount: the lightest damping, where the translation at 22 Hz, and not the rocking, is the peak about x.
+#[test]
+fn the_worst_mount_is_the_least_damped() {
+    let dir = Dir::new();
+    dir.write("bench.toml", uncertain());
+    let arguments = "worst bench.toml --signal line_of_sight0_x --points 30 --json";
+    let found = dir.run(arguments).exits(0).json();
+    let case = &found["cases"][0];
+    let damping = case["keys"]["appendage[1].mount.damping"].as_f64().expect("a number");
+    assert!((damping - 0.03).abs() < 1e-9, "{case}");
+    let least = bench(&[("damping = 0.06", "damping = 0.03")]);
+    dir.write("least.toml", least);
+    let own = dir.run("spectrum least.toml --signal line_of_sight0_x --json").exits(0).json();
+    let largest = numbers(&own["wheels"]["rms"][0]).into_iter().fold(0.0, f64::max);
+    // The rocking frequency hardly changes it.
+    close(case["worst"].as_f64().expect("a number"), largest, 1e-3, "rms");
+    assert!(case["worst"].as_f64() > case["nominal"].as_f64().map(|nominal| 1.5 * nominal), "{case}");
+}
+
+#[test]
+fn modes_are_printed_at_a_speed() {
+    let dir = Dir::new();
+    dir.write("bench.toml", bench(&[]));
+    let found = dir.run(&format!("modes bench.toml --speed {SPEED} --json")).exits(0).json();
+    let poles = found["whirl"]["poles"].as_array().expect("poles");
+    // The loop of the reference is soft.
+    for [hertz, damping] in AT_50_HZ {
+        let matches = |pole: &&Json| {
+            let number = |key: &str| pole[key].as_f64().expect("a number");
+            (number("frequency_rad_s") / TAU / hertz - 1.0).abs() < 1e-4
+                && (number("damping") / damping - 1.0).abs() < 0.05
+        };
+        assert!(poles.iter().any(|pole| matches(&pole)), "{hertz}: {poles:?}");
+    }
+    let text = dir.run(&format!("modes bench.toml --speed {SPEED}")).exits(0);
+    text.prints(&["poles of the body with its wheels at 3000 rpm"]);
+    dir.write("bolted.toml", bench(&[(MOUNT, "")]));
+    dir.run("modes bolted.toml --speed 1").exits(2).says(&["--speed", "actuator.wheels.points"]);
+}
+
+#[test]
+fn runs_refuse_wheels_on_mounts() {
+    let dir = Dir::new();
+    dir.write("bench.toml", bench(&[]));
+    dir.run("check bench.toml").exits(0);
+    for verb in ["simulate bench.toml -o out.mcap", "simulate bench.toml --runs 3 -o out", "report bench.toml -o out.html"] {
+        dir.run(verb).exits(2).says(&["`actuator.wheels.points`", "runs do not have its whirl", "spectrum"]);
+    }
+    assert_eq!(dir.names(""), ["bench.toml"], "nothing is written");
+}
+
+#[test]
+fn mounts_that_do_not_hold_are_refused() {
+    let dir = Dir::new();
+    let stiff = "mount = { stiffness = [[1e4, 0, 0, 0, 0, 0], [0, 1e4, 0, 0, 0, 0], [0, 0, 1e4, 0, 0, 0], [0, 0, 0, 30, 0, 0], [0, 0, 0, 0, 30, 0], [0, 0, 0, 0, 9, 30]] }\n";
+    let flat = "mount = { stiffness = [[0, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]] }\n";
+    let no_modes = format!("{MOUNT}modes = [{{ frequency = 1.0 }}]\n");
+    for (from, to, why) in [
+        ("rocking = \"30 Hz\", ", "", "`appendage[1].mount.rocking` must be given"),
+        ("axis = [0, 1, 0] }", "axis = [0, 0, 0] }", "`appendage[1].mount.axis` must have a length"),
+        (MOUNT, stiff, "`appendage[1].mount.stiffness` must be symmetric"),
+        (MOUNT, flat, "`appendage[1].mount.stiffness` must be positive definite"),
+        (MOUNT, no_modes.as_str(), "`appendage[1].modes` must be left out"),
+        ("[\"rotor\", \"hub\", \"hub\"]", "[\"rotor\", \"hub\"]", "`actuator.wheels.points` must be one for all, or one for each of 3 wheels"),
+        ("[\"rotor\", \"hub\", \"hub\"]", "[\"rotor\", \"hub\", \"bus\"]", "`actuator.wheels.points[2]` must be one of the body's points"),
+        ("phase = \"-90 deg\" }", "point = \"rotor\" }", "`actuator.wheels.imbalance.point` must be left out"),
+    ] {
+        dir.write("bench.toml", bench(&[(from, to)]));
+        dir.run("check bench.toml").exits(2).says(&[why]);
+    }
+}
+
+/// A stiffness at the root is that of the frequencies: k = m w² along, and I w² about each axis.
+#[test]
+fn a_stiffness_is_what_its_frequencies_are() {
+    let square = |hertz: f64| (hertz * TAU) * (hertz * TAU);
+    let (along, about) = (0.95 * square(22.0), 9e-4 * square(30.0));
+    let rows: Vec<String> = (0..6)
+        .map(|row| {
+            let entry = |column: usize| if row == column && row < 3 { along } else if row == column { about } else { 0.0 };
+            format!("{:?}", [0, 1, 2, 3, 4, 5].map(entry))
+        })
+        .collect();
+    let mount = format!("mount = {{ stiffness = [{}], damping = 0.06, axis = [0, 1, 0] }}\n", rows.join(", "));
+    for (own, expected) in wheel_lines(&[(MOUNT, &mount)]).into_iter().zip(wheel_lines(&[])) {
+        close(own, expected, 1e-9, "stiffness");
+    }
+}

@@ -36,7 +36,7 @@ use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::body_poles::WhirlPoles;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::answer::RunObserver;
-use flexsc_core::campaign::{Campaign, CampaignRun};
+use flexsc_core::campaign::{Campaign, CampaignRun, Design};
 use flexsc_core::formats::document::ConfigError;
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::Selection;
