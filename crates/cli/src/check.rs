@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::analysis::pulse_describing_function::PulsedLoop;
-use flexsc_core::campaign::{Campaign, Design};
+use flexsc_core::campaign::Campaign;
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::ConfigError;
 use flexsc_core::{Scenario, ScenarioError};
@@ -59,9 +59,7 @@ fn refused_draws(path: &Path, scenario: &Scenario) -> Option<ConfigError> {
     if scenario.uncertain.is_empty() && scenario.correlated.is_empty() {
         return None;
     }
-    // Linear tools take scenarios that have no runs.
-    let origin = path.display().to_string();
-    let why = match Campaign::from_unchecked_points(scenario.clone(), &origin, Design::default()) {
+    let why = match Campaign::new(scenario.clone(), &path.display().to_string(), []) {
         Ok(campaign) => {
             let failed = |run: u64| campaign.run(run).err().map(|error| (run, error));
             let refused: Vec<(u64, ScenarioError)> = (0..DRAWS).filter_map(failed).collect();

@@ -112,9 +112,6 @@ impl CliError {
     pub fn run(name: &str, source: SimulationError) -> Self {
         match source {
             SimulationError::Record(RecordError::Interrupted) => Self::Interrupted(String::new()),
-            SimulationError::NoRun(ConfigError { key, why, .. }) => {
-                ScenarioError::Key { origin: name.to_owned(), key, why }.into()
-            }
             source => Self::Run { name: name.to_owned(), source },
         }
     }

@@ -26,7 +26,7 @@ mod workers;
 
 use std::time::Instant as WallInstant;
 
-use flexsc_formats::document::{ConfigError, Document, ScenarioError, key};
+use flexsc_formats::document::{Document, ScenarioError, key};
 use flexsc_record::{Detail, OutputName, Provenance, Record};
 use flexsc_spacecraft::body::Planar;
 use thiserror::Error;
@@ -134,9 +134,6 @@ impl Campaign {
 
     /// Returns the campaign of a scenario over its `[uncertain]` keys and the points of a design.
     pub fn from_design(scenario: Scenario, origin: &str, design: Design) -> Result<Self, ScenarioError> {
-        if let Some(ConfigError { key, why, .. }) = scenario.run_fault() {
-            return Err(ScenarioError::Key { origin: origin.to_owned(), key, why });
-        }
         let campaign = Self::from_unchecked_points(scenario, origin, design)?;
         // A key that does not exist, or a range that is not accepted, fails all runs: report it at once.
         for keys in campaign.design.ends() {

@@ -36,7 +36,7 @@ use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::body_poles::WhirlPoles;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::answer::RunObserver;
-use flexsc_core::campaign::{Campaign, CampaignRun, Design};
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::formats::document::ConfigError;
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::Selection;
@@ -200,8 +200,8 @@ impl Scenario {
     }
 
     fn draw(&self, run: u64) -> PyResult<Self> {
-        let campaign = Campaign::from_unchecked_points(self.inner.clone(), &self.origin, Design::default());
-        Self::new(&self.origin, campaign.map_err(scenario_error)?.run(run).map(|run| run.scenario))
+        let campaign = Campaign::new(self.inner.clone(), &self.origin, []).map_err(scenario_error)?;
+        Self::new(&self.origin, campaign.run(run).map(|run| run.scenario))
     }
 
     #[getter]

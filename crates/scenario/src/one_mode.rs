@@ -55,18 +55,6 @@ impl Scenario {
         })
     }
 
-    /// Returns the error of a run of a scenario that linear tools alone take: with wheels that turn with a part of the structure.
-    pub fn run_fault(&self) -> Option<ConfigError> {
-        let wheel = self.study.carried_rotors.first()?.wheel;
-        let key = self.actuator.wheels().map_or_else(String::new, |(_, key)| format!("{key}.points"));
-        let why = format!(
-            "carries wheel {} on a part that moves against the hub, and runs do not have its whirl: `modes`, `margins`, `spectrum`, \
-             `worst --signal`, `worst --margin` and `tune` do; a run needs it on the hub, with `imbalance.point` for its loads",
-            wheel + 1
-        );
-        Some(ConfigError::new(key, why))
-    }
-
     /// Returns the error of an analysis of one loop, for a scenario whose laws act one after another.
     pub fn stage_choice_fault(&self) -> Option<ConfigError> {
         (!self.law.stages().is_empty() && self.mode.is_empty()).then(|| {

@@ -1,7 +1,6 @@
 //! Errors that end a run before its end.
 
 use flexsc_control::custom::PartError;
-use flexsc_formats::document::ConfigError;
 use flexsc_numerics::time::Instant;
 use flexsc_record::RecordError;
 use thiserror::Error;
@@ -9,9 +8,6 @@ use thiserror::Error;
 /// Error that ends a simulation.
 #[derive(Debug, Error)]
 pub enum SimulationError {
-    /// The scenario is for linear tools alone.
-    #[error("{0}")]
-    NoRun(ConfigError),
     /// The state of the body is no longer a finite number.
     #[error("the state is no longer finite at t = {at} s")]
     NonFinite {

@@ -37,7 +37,6 @@ mod telemetry;
 use flexsc_control::estimator::AdaptationRun;
 use flexsc_control::law::Event;
 use flexsc_control::part::Part;
-use flexsc_formats::document::ConfigError;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
@@ -81,8 +80,6 @@ pub struct Simulation {
     has_custom_parts: bool,
     /// Initial setup for the relay kernel, if it can simulate this run.
     kernel_setup: Option<Box<RunSetup>>,
-    /// Reason for which the scenario cannot be simulated, if there is one.
-    refused: Option<ConfigError>,
 }
 
 impl Simulation {
@@ -102,7 +99,6 @@ impl Simulation {
             recorder: Recorder::new(scenario, &guidance, run),
             guidance,
             has_custom_parts: scenario.has_custom_parts(),
-            refused: scenario.run_fault(),
             // The kernel has no pieces of the motion.
             kernel_setup: relay_setup::single(scenario).filter(|_| requirements.is_empty()).map(Box::new),
             requirements,

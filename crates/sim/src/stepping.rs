@@ -144,9 +144,6 @@ impl Simulation {
     /// # Errors
     /// Fails like [`Simulation::run_until`].
     pub fn open(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if let Some(fault) = &self.refused {
-            return Err(SimulationError::NoRun(fault.clone()));
-        }
         let now = self.clock.now();
         if self.recorder.open(now, record)? {
             self.plant.evaluate(now)?;

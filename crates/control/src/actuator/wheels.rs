@@ -172,9 +172,10 @@ impl ActuatorSpec for Wheels {
             needs.require(offers.body.is_two_way, key, ROTATION);
         }
         if self.points.is_some() {
-            needs.require(offers.body.is_two_way, "points", ROTATION);
             let why = "needs appendages that do not turn, on drives or hinges";
             needs.require(!offers.body.turns_appendages, "points", why);
+            let why = "needs bearings that do not stick: leave out `friction`, or have viscous friction alone";
+            needs.require(self.friction_or_imbalance_key() != Some("friction"), "points", why);
         }
         if offers.body.turns_appendages
             && let Some(key) = self.friction_or_imbalance_key()
@@ -274,12 +275,12 @@ impl Wheels {
         Ok(allocation)
     }
 
-    /// Returns the key by which a wheel's motion depends on that of the body: friction, imbalance, or `None`.
+    /// Returns the key by which a wheel's motion depends on that of the body: friction, imbalance, the points that carry wheels, or `None`.
     pub fn bearing_key(&self) -> Option<&'static str> {
         match (&self.friction, &self.imbalance) {
             (Some(_), _) => Some("friction"),
             (None, Some(_)) => Some("imbalance"),
-            (None, None) => None,
+            (None, None) => self.points.as_ref().map(|_| "points"),
         }
     }
 
@@ -311,6 +312,8 @@ impl Wheels {
     /// # Errors
     /// A `ConfigError` with a key within the wheels and the reason.
     pub fn bearings(&self, body: &ThreeAxisModel) -> Result<Vec<Bearing>, ConfigError> {
+        let carried = self.carried_rotors(body)?;
+        let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
         let bearing = |(wheel, rotor): (usize, HubRotor)| {
             let friction = self.friction.as_ref();
             let lines = match &self.imbalance {
@@ -328,6 +331,9 @@ impl Wheels {
                 coulomb: friction.map_or(0.0, |friction| friction.coulomb.for_wheel(wheel).get()),
                 breakaway: friction.map_or(0.0, |friction| friction.breakaway_torque(wheel)),
                 lines,
+                tilts: carried.iter().find(|own| own.wheel == wheel).map_or_else(Vec::new, |own| {
+                    own.rotations.iter().zip(hub).map(|(rotation, hub)| rotation - hub).collect()
+                }),
             })
         };
         self.rotors()?.into_iter().enumerate().map(bearing).collect()
