@@ -330,7 +330,11 @@ fn runs_whirl_as_linear_loops_do() {
         let run = dir.run(&format!("simulate bench.toml {window}")).exits(0).json();
         let rms = run["metrics"]["line_of_sight_rms_rad"][0].as_f64().expect("a number");
         let linear = dir.run(&format!("spectrum bench.toml --speeds {SPEED}:{SPEED}:1 --json")).exits(0).json();
-        let squares = linear["wheels"]["rms"].as_array().expect("outputs").iter().map(|own| numbers(own)[0].powi(2));
+        // The other wheels rest in the run.
+        let lines = linear["wheels"]["lines"].as_array().expect("lines").iter();
+        let outputs = lines.filter(|own| own["wheel"] == 1).flat_map(|own| own["outputs"].as_array().expect("outputs"));
+        let amplitudes = outputs.flat_map(|own| own["aliases"].as_array().expect("aliases").iter().chain([&own["direct"]]));
+        let squares = amplitudes.map(|own| 0.5 * own["amplitude"].as_f64().expect("a number").powi(2));
         close(rms, squares.sum::<f64>().sqrt(), 1e-3, "rms");
     }
 }
