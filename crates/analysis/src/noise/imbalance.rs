@@ -71,7 +71,7 @@ struct WheelHarmonic {
 }
 
 /// Largest number of maxima over the speed that are found exactly, of each output.
-const MOST_MAXIMA: usize = 6;
+const MOST_MAXIMA: usize = 12;
 
 impl WheelSpectrum {
     /// Returns the spectrum with the indices of its lines over windows: each line has its weight.
@@ -208,14 +208,13 @@ impl WheelImbalance {
         lines: &LineLoop<'_>,
         outputs: &[usize],
     ) -> Result<Option<WheelSpectrum>, ConfigError> {
-        let Some(largest) = self.largest_speed else { return Ok(None) };
-        let part = |k: u32| LOWEST + (1.0 - LOWEST) * f64::from(k) / f64::from(SPEEDS - 1);
-        let steps: Vec<f64> = (0..SPEEDS).map(|k| largest * part(k)).collect();
-        let orders: Vec<f64> =
-            self.harmonics.chunk_by(|a, b| a.order == b.order).map(|same| same[0].order).collect();
-        let range = [steps[0], largest];
+        let Some((steps, range)) = self.steps() else { return Ok(None) };
+        let whirls = !lines.parts.scenario.study.carried_rotors.is_empty();
+        let orders = self.orders();
         let mut resonant = resonant_speeds(&lines.parts, &orders, range, steps[1] - steps[0])?;
-        resonant.extend(whirl_speeds(lines.parts.scenario, &orders, range, steps[1] - steps[0])?);
+        if whirls {
+            resonant.extend(whirl_speeds(lines.parts.scenario, &orders, range, steps[1] - steps[0])?);
+        }
         let own = self.spectrum(lines, &steps, outputs)?;
         let examined: Vec<f64> = resonant.iter().map(|peak| peak.speed).collect();
         let tops = self.spectrum(lines, &examined, outputs)?;
@@ -240,15 +239,41 @@ impl WheelImbalance {
         let flanks = self.spectrum(lines, &flanks, outputs)?;
         let tops = tops.selected(&risen);
         let found = own.merged(tops).merged(flanks);
-        let whirls = !lines.parts.scenario.study.carried_rotors.is_empty();
         Ok(Some(if whirls { self.with_maxima(lines, found, outputs)? } else { found }))
     }
 
-    /// Returns a spectrum with the largest maxima of the rms of each output between its speeds.
+    /// Computes the lines of some outputs at equal steps, where harmonics meet modes of the body, and at the largest maxima between;
+    /// `None` if the scenario gives no largest speed. Where aliases meet modes is not looked for.
     ///
     /// # Errors
     /// See [`LineLoop::lines`].
-    pub fn with_maxima(
+    pub fn largest_spectrum(
+        &self,
+        lines: &LineLoop<'_>,
+        outputs: &[usize],
+    ) -> Result<Option<WheelSpectrum>, ConfigError> {
+        let Some((steps, range)) = self.steps() else { return Ok(None) };
+        let met = whirl_speeds(lines.parts.scenario, &self.orders(), range, steps[1] - steps[0])?;
+        let met: Vec<f64> = met.into_iter().map(|peak| peak.speed).collect();
+        let found = self.spectrum(lines, &steps, outputs)?.merged(self.spectrum(lines, &met, outputs)?);
+        self.with_maxima(lines, found, outputs).map(Some)
+    }
+
+    /// Returns equal steps of the speed, and their range (rad/s), if the scenario gives a largest speed.
+    fn steps(&self) -> Option<(Vec<f64>, [f64; 2])> {
+        let largest = self.largest_speed?;
+        let part = |k: u32| LOWEST + (1.0 - LOWEST) * f64::from(k) / f64::from(SPEEDS - 1);
+        let steps: Vec<f64> = (0..SPEEDS).map(|k| largest * part(k)).collect();
+        Some((steps.clone(), [steps[0], largest]))
+    }
+
+    /// Returns the orders of all harmonics.
+    fn orders(&self) -> Vec<f64> {
+        self.harmonics.chunk_by(|a, b| a.order == b.order).map(|same| same[0].order).collect()
+    }
+
+    /// Returns a spectrum with the largest maxima of the rms of each output between its speeds.
+    fn with_maxima(
         &self,
         lines: &LineLoop<'_>,
         spectrum: WheelSpectrum,

@@ -76,8 +76,8 @@ pub fn resonant_speeds(
     Ok(peaks)
 }
 
-/// Returns the speeds between two (rad/s) at which harmonics of these orders meet modes that change with the speed of the wheels, and
-/// that are narrower than `step`; none without wheels that points of the structure carry.
+/// Returns the speeds between two (rad/s) at which harmonics of these orders meet modes of a scenario's body, with the whirl of its wheels,
+/// that are narrower than `step`.
 ///
 /// # Errors
 /// See [`OpenLoop::from_scenario`].
@@ -87,9 +87,6 @@ pub fn whirl_speeds(
     [least, largest]: [f64; 2],
     step: f64,
 ) -> Result<Vec<ResonantSpeed>, ConfigError> {
-    if scenario.study.carried_rotors.is_empty() {
-        return Ok(Vec::new());
-    }
     let rates = |speed: f64| -> Result<DMatrix<f64>, ConfigError> {
         let a = StateSpaceModel::from(LinearModel::at_wheel_speed(scenario, speed)?).matrices.a;
         // Without the rigid angles, on which nothing depends.

@@ -38,8 +38,7 @@ impl WorstSpeed {
         let lines = LineLoop::from_scenario(scenario)?;
         stable_radius(&lines.parts)?;
         let place = lines.output(&output.name).map_err(NoiseError::Request)?;
-        let found = imbalance.refined_spectrum(&lines, &[place])?.ok_or_else(without_speed)?;
-        let found = imbalance.with_maxima(&lines, found, &[place])?;
+        let found = imbalance.largest_spectrum(&lines, &[place])?.ok_or_else(without_speed)?;
         let values: Vec<f64> = match output.window {
             None => found.rms[0].clone(),
             Some(window) => {
