@@ -80,7 +80,8 @@ fn main() {
     measure("100 speeds, 20 orders, 50 modes, 2 lines of sight", || {
         let imbalance = WheelImbalance::from_scenario(&wide).expect("wheels").expect("imbalance");
         let lines = LineLoop::from_scenario(&wide).expect("a loop");
-        let outputs = ["line_of_sight0_x", "line_of_sight0_y"].map(|name| lines.output(name).expect("an output"));
+        let outputs =
+            ["line_of_sight0_x", "line_of_sight0_y"].map(|name| lines.output(name).expect("an output"));
         imbalance.spectrum(&lines, &speeds, &outputs).expect("lines").rms[0][50]
     });
     let uncertain = scenario(3, 3, UNCERTAIN);

@@ -18,7 +18,8 @@ use crate::util::Dir;
 /// Speed of the wheel (rad/s).
 const SPEED: f64 = 50.0 * TAU;
 /// Mount of the wheel, and the wheels: the first turns on it about y, the others on the hub, whose inertia has theirs.
-const MOUNT: &str = "mount = { translation = \"22 Hz\", rocking = \"30 Hz\", damping = 0.06, axis = [0, 1, 0] }\n";
+const MOUNT: &str =
+    "mount = { translation = \"22 Hz\", rocking = \"30 Hz\", damping = 0.06, axis = [0, 1, 0] }\n";
 const WHEELS: &str = "axes = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]\ninertia = 1.6e-3\npoints = [\"rotor\", \"hub\", \"hub\"]\n\
                       speeds = [\"3000 rpm\", 0, 0]\nspeed_limit = \"6000 rpm\"\n\
                       imbalance = { static = [3.6e-6, 0, 0], dynamic = [1.2e-7, 0, 0], phase = \"-90 deg\" }";
@@ -99,11 +100,13 @@ fn scenario(changes: &[(&str, &str)]) -> Scenario {
 /// Returns the state matrix with the wheel at a speed, and a soft loop on the hub's rotation as that of the reference.
 fn closed(scenario: &Scenario, speed: f64) -> DMatrix<f64> {
     let model = LinearModel::at_wheel_speed(scenario, speed).expect("a linear body");
-    let matrix = |rows: &[Vec<f64>]| DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column]);
+    let matrix =
+        |rows: &[Vec<f64>]| DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column]);
     let (a, b, c) = (matrix(&model.a), matrix(&model.b), matrix(&model.c));
     let loop_frequency = 0.05 * TAU;
     let hub = DMatrix::from_diagonal(&DVector::from_row_slice(&[4.2, 3.9, 4.8]));
-    let fed_back = &hub * c.rows(0, 3) * (loop_frequency * loop_frequency) + hub * c.rows(3, 3) * (1.4 * loop_frequency);
+    let fed_back =
+        &hub * c.rows(0, 3) * (loop_frequency * loop_frequency) + hub * c.rows(3, 3) * (1.4 * loop_frequency);
     a - b * fed_back
 }
 
@@ -162,7 +165,8 @@ fn whirl_on_a_fixed_base() {
         ("damping = 0.06", "damping = 0"),
     ];
     let scenario = scenario(&heavy);
-    let whirl = WhirlPoles::from_scenario(&scenario, Some(SPEED)).expect("poles").expect("a wheel that is carried");
+    let whirl =
+        WhirlPoles::from_scenario(&scenario, Some(SPEED)).expect("poles").expect("a wheel that is carried");
     for expected in [9.177_460_053_394, 98.066_348_942_282] {
         let nearest = whirl.poles.iter().map(|pole| (pole.frequency_rad_s / TAU / expected - 1.0).abs());
         assert!(nearest.fold(1.0, f64::min) < 1e-9, "{expected}: {whirl:?}");
@@ -192,12 +196,15 @@ fn lines_of_a_wheel_on_its_mount() {
     for (order, force, torque, expected) in LINES {
         // The force turns from x towards -z, and the torque is 90 deg behind.
         let parts = [load(body, [Vector::x(), Vector::zeros()]), load(body, [-Vector::z(), Vector::zeros()])];
-        let torques = [load(body, [Vector::zeros(), Vector::x()]), load(body, [Vector::zeros(), -Vector::z()])];
+        let torques =
+            [load(body, [Vector::zeros(), Vector::x()]), load(body, [Vector::zeros(), -Vector::z()])];
         let turning = |[cosine, sine]: &[DVector<f64>; 2], size: f64| {
-            cosine.map(Complex::from) * Complex::from(size) + sine.map(Complex::from) * Complex::new(0.0, -size)
+            cosine.map(Complex::from) * Complex::from(size)
+                + sine.map(Complex::from) * Complex::new(0.0, -size)
         };
         let square = SPEED * SPEED;
-        let all = turning(&parts, force * square) + turning(&torques, torque * square) * Complex::new(0.0, -1.0);
+        let all =
+            turning(&parts, force * square) + turning(&torques, torque * square) * Complex::new(0.0, -1.0);
         let found = seen(&scenario, SPEED, order * SPEED, &all);
         for about in [0, 1] {
             close(found[about], expected[about], 1e-9, &format!("order {order} about {about}"));
@@ -224,7 +231,7 @@ fn wrong_models_are_told_apart() {
     let at_rotor = "phase = \"-90 deg\", point = \"rotor\" }";
     let cases: [(&str, &[(&str, &str)], [f64; 2]); 5] = [
         ("whirl", &[], [4.8702087203377e-10, 1.4287037885361e-08]),
-        ("about -y", &[("\"3000 rpm\"", "\"-3000 rpm\"")], [2.7211949799535e-09, 1.4539259127696e-08]),
+        ("about -y", &[("\"3000 rpm\"", "\"-3000 rpm\"")], [4.0377772072511e-10, 1.4578922788722e-08]),
         ("second harmonic", &[(imbalance, harmonic)], [5.6005219679240e-09, 1.9057507813149e-11]),
         // A mount without whirl: the first harmonic is 8 times too large about x.
         (
@@ -252,7 +259,8 @@ fn numbers(value: &Json) -> Vec<f64> {
 fn worst_speeds_are_found() {
     let dir = Dir::new();
     dir.write("bench.toml", bench(&[("bandwidth = 1.0", "bandwidth = 0.001")]));
-    let found = dir.run("spectrum bench.toml --signal line_of_sight0_x,line_of_sight0_y --json").exits(0).json();
+    let found =
+        dir.run("spectrum bench.toml --signal line_of_sight0_x,line_of_sight0_y --json").exits(0).json();
     let speeds = numbers(&found["wheels"]["speed_rad_s"]);
     for (about, hertz, amplitude) in [
         (0, 22.057875182561, 9.364150195328e-8),
@@ -263,7 +271,7 @@ fn worst_speeds_are_found() {
         let near = speeds.iter().zip(&rms).filter(|(speed, _)| (*speed / TAU / hertz - 1.0).abs() < 2e-6);
         let largest = near.map(|(_, rms)| rms * f64::sqrt(2.0)).fold(0.0, f64::max);
         // Aliases of the slow loop are in the rms.
-        close(largest, amplitude, 2e-6, &format!("{hertz} Hz"));
+        close(largest, amplitude, 1e-5, &format!("{hertz} Hz"));
     }
 }
 
@@ -314,30 +322,35 @@ fn modes_are_printed_at_a_speed() {
     dir.run("modes bolted.toml --speed 1").exits(2).says(&["--speed", "actuator.wheels.points"]);
 }
 
-/// A run at a steady speed vibrates as the lines do: 1e-3 of the rms, that of the wheel's first harmonic and of the second alone.
+/// A run at a steady speed vibrates by the second harmonic as its line does; without whirl it would be 22 times less. At 50.2 Hz the alias
+/// is no constant.
 #[test]
 fn runs_whirl_as_linear_loops_do() {
-    let harmonic = "imbalance = { harmonics = [{ order = 2.0, torque = 1.5e-8 }] }";
-    let imbalance = "imbalance = { static = [3.6e-6, 0, 0], dynamic = [1.2e-7, 0, 0], phase = \"-90 deg\" }";
-    let quiet: [(&str, &str); 3] = [
-        ("angle_random_walk = 1e-6", "angle_random_walk = 0"),
-        ("noise = [1e-5, 1e-5, 1e-5]", "noise = [0, 0, 0]"),
+    let speed = 3013.0 * TAU / 60.0;
+    let quiet = [
+        ("angle_random_walk = 1e-6", "angle_random_walk = 1e-13"),
+        ("noise = [1e-5, 1e-5, 1e-5]", "noise = [1e-13, 1e-13, 1e-13]"),
         ("period = 0.01\noptics", "period = 0.0017\noptics"),
+        ("\"3000 rpm\"", "\"3013 rpm\""),
+        (
+            "imbalance = { static = [3.6e-6, 0, 0], dynamic = [1.2e-7, 0, 0], phase = \"-90 deg\" }",
+            "imbalance = { harmonics = [{ order = 2.0, torque = 1.5e-8 }] }",
+        ),
     ];
     let dir = Dir::new();
-    for changes in [vec![], vec![(imbalance, harmonic)]] {
-        dir.write("bench.toml", bench(&[&quiet[..], &changes].concat()));
-        let window = "--set duration=24 --set line_of_sight[0].window=[20,24] --log none --json";
-        let run = dir.run(&format!("simulate bench.toml {window}")).exits(0).json();
-        let rms = run["metrics"]["line_of_sight_rms_rad"][0].as_f64().expect("a number");
-        let linear = dir.run(&format!("spectrum bench.toml --speeds {SPEED}:{SPEED}:1 --json")).exits(0).json();
-        // The other wheels rest in the run.
-        let lines = linear["wheels"]["lines"].as_array().expect("lines").iter();
-        let outputs = lines.filter(|own| own["wheel"] == 1).flat_map(|own| own["outputs"].as_array().expect("outputs"));
-        let amplitudes = outputs.flat_map(|own| own["aliases"].as_array().expect("aliases").iter().chain([&own["direct"]]));
-        let squares = amplitudes.map(|own| 0.5 * own["amplitude"].as_f64().expect("a number").powi(2));
-        close(rms, squares.sum::<f64>().sqrt(), 1e-3, "rms");
-    }
+    dir.write("bench.toml", bench(&quiet));
+    let window = "--set duration=24 --set line_of_sight[0].window=[20,24] --log none --json";
+    let run = dir.run(&format!("simulate bench.toml {window}")).exits(0).json();
+    let rms = run["metrics"]["line_of_sight_rms_rad"][0].as_f64().expect("a number");
+    let signals = "--signal line_of_sight0_x,line_of_sight0_y";
+    let linear =
+        dir.run(&format!("spectrum bench.toml {signals} --speeds {speed}:{speed}:1 --json")).exits(0).json();
+    // The other wheels rest in the run.
+    let lines = linear["wheels"]["lines"].as_array().expect("lines").iter();
+    let outputs =
+        lines.filter(|own| own["wheel"] == 1).flat_map(|own| own["outputs"].as_array().expect("outputs"));
+    let squares = outputs.map(|own| 0.5 * own["direct"]["amplitude"].as_f64().expect("a number").powi(2));
+    close(rms, squares.sum::<f64>().sqrt(), 5e-3, "rms");
 }
 
 #[test]
@@ -352,9 +365,21 @@ fn mounts_that_do_not_hold_are_refused() {
         (MOUNT, stiff, "`appendage[1].mount.stiffness` must be symmetric"),
         (MOUNT, flat, "`appendage[1].mount.stiffness` must be positive definite"),
         (MOUNT, no_modes.as_str(), "`appendage[1].modes` must be left out"),
-        ("[\"rotor\", \"hub\", \"hub\"]", "[\"rotor\", \"hub\"]", "`actuator.wheels.points` must be one for all, or one for each of 3 wheels"),
-        ("[\"rotor\", \"hub\", \"hub\"]", "[\"rotor\", \"hub\", \"bus\"]", "`actuator.wheels.points[2]` must be one of the body's points"),
-        ("phase = \"-90 deg\" }", "point = \"rotor\" }", "`actuator.wheels.imbalance.point` must be left out"),
+        (
+            "[\"rotor\", \"hub\", \"hub\"]",
+            "[\"rotor\", \"hub\"]",
+            "`actuator.wheels.points` must be one for all, or one for each of 3 wheels",
+        ),
+        (
+            "[\"rotor\", \"hub\", \"hub\"]",
+            "[\"rotor\", \"hub\", \"bus\"]",
+            "`actuator.wheels.points[2]` must be one of the body's points",
+        ),
+        (
+            "phase = \"-90 deg\" }",
+            "point = \"rotor\" }",
+            "`actuator.wheels.imbalance.point` must be left out",
+        ),
     ] {
         dir.write("bench.toml", bench(&[(from, to)]));
         dir.run("check bench.toml").exits(2).says(&[why]);
@@ -368,11 +393,20 @@ fn a_stiffness_is_what_its_frequencies_are() {
     let (along, about) = (0.95 * square(22.0), 9e-4 * square(30.0));
     let rows: Vec<String> = (0..6)
         .map(|row| {
-            let entry = |column: usize| if row == column && row < 3 { along } else if row == column { about } else { 0.0 };
+            let entry = |column: usize| {
+                if row == column && row < 3 {
+                    along
+                } else if row == column {
+                    about
+                } else {
+                    0.0
+                }
+            };
             format!("{:?}", [0, 1, 2, 3, 4, 5].map(entry))
         })
         .collect();
-    let mount = format!("mount = {{ stiffness = [{}], damping = 0.06, axis = [0, 1, 0] }}\n", rows.join(", "));
+    let mount =
+        format!("mount = {{ stiffness = [{}], damping = 0.06, axis = [0, 1, 0] }}\n", rows.join(", "));
     for (own, expected) in wheel_lines(&[(MOUNT, &mount)]).into_iter().zip(wheel_lines(&[])) {
         close(own, expected, 1e-9, "stiffness");
     }

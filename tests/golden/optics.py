@@ -117,9 +117,9 @@ class Bench:
 
 
 def line(order, force, torque, speed, sense=1.0, **options):
-    """The amplitudes about x and y of a force and of a torque 90 deg behind, which turn about y (of the sense -1: about -y)."""
+    """The amplitudes about x and y of a force and of a torque at -90 deg about y from it, which turn about y (of the sense -1: about -y)."""
     turning = np.array([1, 0, 0]) - 1j * sense * np.cross([0, 1, 0], [1, 0, 0])
-    load = np.r_[force * turning, torque * turning * -1j] * speed**2
+    load = np.r_[force * turning, torque * turning * -1j * sense] * speed**2
     return np.abs(Bench(speed, **options).response(order * abs(speed)) @ load)
 
 

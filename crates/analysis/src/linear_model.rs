@@ -175,7 +175,8 @@ impl LinearModel {
         }
         for carried in &settings.carried_rotors {
             let momentum = |speed: f64| carried.rotor.axis * (carried.rotor.spin_inertia * speed);
-            stored -= momentum(carried.speed + carried.rotor.axis.dot(&Vector::from(body.rate.map(Finite::get))));
+            stored -=
+                momentum(carried.speed + carried.rotor.axis.dot(&Vector::from(body.rate.map(Finite::get))));
             let (pushed, rate) = turned_at(&|mode| carried.rotations[mode]);
             let speed = wheel_speed.map_or(carried.speed, |speed| speed.copysign(carried.speed));
             a += pushed * momentum(speed).cross_matrix() * rate;

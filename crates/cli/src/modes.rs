@@ -71,10 +71,14 @@ struct ThreeAxisTable {
 /// Computes the modes of a scenario's body.
 pub fn results(scenario: &Scenario, args: &ModesArgs) -> Result<Box<dyn Results>, CliError> {
     let name = scenario.name.clone();
-    let whirl = WhirlPoles::from_scenario(scenario, args.speed)
-        .map_err(|fault| ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })?;
+    let whirl = WhirlPoles::from_scenario(scenario, args.speed).map_err(|fault| ScenarioError::Key {
+        origin: name.clone(),
+        key: fault.key,
+        why: fault.why,
+    })?;
     if args.speed.is_some() && whirl.is_none() {
-        let why = format!("--speed: {name} has no `actuator.wheels.points` on a part that moves against the hub");
+        let why =
+            format!("--speed: {name} has no `actuator.wheels.points` on a part that moves against the hub");
         return Err(CliError::Arguments(why));
     }
     let style = Style { units: args.units.units, all: args.all };

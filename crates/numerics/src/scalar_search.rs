@@ -105,7 +105,11 @@ pub fn resonance(mut f: impl FnMut(f64) -> f64, arguments: [f64; 3], values: [f6
         let next = if within { x - step } else { 0.5 * (x + longer) };
         let value = square(f(next));
         // What is beyond the better of two arguments is no maximum.
-        if (value <= at) == (next < x) { high = x.max(next) } else { low = x.min(next) }
+        if (value <= at) == (next < x) {
+            high = x.max(next)
+        } else {
+            low = x.min(next)
+        }
         let mut all = [best[0], best[1], best[2], (value, next)];
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         best = [all[0], all[1], all[2]];

@@ -32,8 +32,8 @@ use std::ffi::OsString;
 use std::fmt;
 use std::path::PathBuf;
 
-use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::body_poles::WhirlPoles;
+use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::answer::RunObserver;
 use flexsc_core::campaign::{Campaign, CampaignRun};

@@ -106,7 +106,11 @@ impl LineSolver {
                 Some(body) if place + 1 == turns.frequencies.len() => Some(body + &motion.amplitudes),
                 body => body,
             };
-            let commanded = if has_commands { turns.of_pieces(&pieces, &commands, *own) } else { Amplitudes::zeros(0, 0) };
+            let commanded = if has_commands {
+                turns.of_pieces(&pieces, &commands, *own)
+            } else {
+                Amplitudes::zeros(0, 0)
+            };
             let unknown = Complex::new(f64::NAN, 0.0);
             let amplitude = |output: usize, load: usize| match &rows[outputs[output]] {
                 OutputRow::Command(axis) => commanded[(*axis, load)],

@@ -155,7 +155,8 @@ impl<'a> LineLoop<'a> {
         let motion = self.motion(turns.load(), load)?;
         let (own, mut sum) = (turns.frequencies[turn], Complex::ZERO);
         motion.motion.integrate(&[output], [0.0, turns.period], own.abs(), |time, weight, rows| {
-            let value: Complex<f64> = rows.row(0).iter().zip(&motion.state).map(|(row, state)| state * *row).sum();
+            let value: Complex<f64> =
+                rows.row(0).iter().zip(&motion.state).map(|(row, state)| state * *row).sum();
             sum += value * unit_circle(-own * time) * (weight / turns.period);
         });
         Ok(sum)

@@ -138,9 +138,7 @@ impl PeriodRows {
         let mut flows = BTreeMap::new();
         for pair in setup.instants.windows(2) {
             let length = pair[1] - pair[0];
-            flows
-                .entry(length)
-                .or_insert_with(|| held(&parts.body.a, &parts.body.b, seconds(length)));
+            flows.entry(length).or_insert_with(|| held(&parts.body.a, &parts.body.b, seconds(length)));
         }
         let (mut rows, instants) = LoopRows::start(&identity, setup, sources);
         let pieces = rows.run(parts, (&schedule, &instants, &flows), &draws, (size, None));

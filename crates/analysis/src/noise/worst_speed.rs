@@ -33,7 +33,8 @@ impl WorstSpeed {
     /// # Errors
     /// A scenario without unbalanced wheels, without such an output, or whose loop is not linear or not stable.
     pub fn from_scenario(scenario: &Scenario, output: &WheelOutput) -> Result<(Self, String), NoiseError> {
-        let missing = || ConfigError::new("actuator.wheels.imbalance", "is missing: without it wheels have no lines");
+        let missing =
+            || ConfigError::new("actuator.wheels.imbalance", "is missing: without it wheels have no lines");
         let imbalance = WheelImbalance::from_scenario(scenario)?.ok_or_else(missing)?;
         let lines = LineLoop::from_scenario(scenario)?;
         stable_radius(&lines.parts)?;

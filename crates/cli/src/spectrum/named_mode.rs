@@ -72,7 +72,9 @@ impl ShownModes {
         let most = all.iter().map(|(_, hertz)| hertz.len()).max().unwrap_or(0);
         // Slow motions of the rigid body have fewer poles at rest: modes are counted from the highest.
         let curve = |down: usize| -> Vec<Point> {
-            let at = |(speed, hertz): &(f64, Vec<f64>)| Some((*speed, *hertz.get(hertz.len().checked_sub(down + 1)?)?));
+            let at = |(speed, hertz): &(f64, Vec<f64>)| {
+                Some((*speed, *hertz.get(hertz.len().checked_sub(down + 1)?)?))
+            };
             all.iter().filter_map(at).collect()
         };
         let whirls = |curve: &Vec<Point>| {

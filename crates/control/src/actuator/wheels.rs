@@ -174,7 +174,8 @@ impl ActuatorSpec for Wheels {
         if self.points.is_some() {
             let why = "needs appendages that do not turn, on drives or hinges";
             needs.require(!offers.body.turns_appendages, "points", why);
-            let why = "needs bearings that do not stick: leave out `friction`, or have viscous friction alone";
+            let why =
+                "needs bearings that do not stick: leave out `friction`, or have viscous friction alone";
             needs.require(self.friction_or_imbalance_key() != Some("friction"), "points", why);
         }
         if offers.body.turns_appendages
@@ -368,7 +369,8 @@ impl Wheels {
                 let why = format!("must be one of the body's points, {}, got `{name}`", body.point_names());
                 return Err(ConfigError::new(key, why));
             }
-            let rotations: Vec<Vector> = body.shapes(&name).into_iter().map(|(_, rotation)| rotation).collect();
+            let rotations: Vec<Vector> =
+                body.shapes(&name).into_iter().map(|(_, rotation)| rotation).collect();
             if rotations != hub {
                 carried.push(CarriedRotor { wheel, rotor, speed: speeds[wheel], rotations });
             }

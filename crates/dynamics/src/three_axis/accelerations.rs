@@ -65,8 +65,8 @@ impl ThreeAxisMotion {
         let mut modes = Vec::with_capacity(model.modes.len());
         for (index, mode) in model.modes.iter().enumerate() {
             let (q, rate) = (view.displacements[index], view.rates[index]);
-            let mut force = mode.centrifugal_force(&centrifugal_terms(&view.rate))
-                + bearings_now.force(index, &stage);
+            let mut force =
+                mode.centrifugal_force(&centrifugal_terms(&view.rate)) + bearings_now.force(index, &stage);
             force += self.loads.forces.get(index).copied().unwrap_or(0.0);
             if let Some(tide) = &tide {
                 force += mode.tidal_force(tide);

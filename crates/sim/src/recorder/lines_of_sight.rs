@@ -48,7 +48,7 @@ impl MountedLine {
             offsets: difference(scenario.study.sensor_points.first()?),
             rotations: difference(hub),
             displacements: body.displacements(&line.point, &Vector::zeros()),
-            optics: (!line.optics.is_empty()).then(|| line.sensitivity(body)),
+            optics: (!line.optics.is_empty()).then(|| line.sensitivity(body).besides_hub(body)),
         })
     }
 

@@ -197,7 +197,11 @@ impl BearingLoads<'_> {
                 let tilting = modes.fold(Vector::zeros(), |sum, (tilt, modal_rate)| sum + tilt * *modal_rate);
                 torque += momentum.cross(&tilting);
                 let is_carried = !bearing.tilts.is_empty();
-                stage.whirl.push(if is_carried { momentum.cross(&(rate + tilting)) } else { Vector::zeros() });
+                stage.whirl.push(if is_carried {
+                    momentum.cross(&(rate + tilting))
+                } else {
+                    Vector::zeros()
+                });
             }
         }
         for (index, (bearing, rotor)) in self.bearings.iter().zip(self.rotors).enumerate() {
@@ -227,7 +231,11 @@ impl BearingLoads<'_> {
             .zip(&stage.imbalance_terms)
             .map(|(line, [c, s])| line.forces[0][mode] * c + line.forces[1][mode] * s)
             .sum();
-        let carried = self.bearings.iter().zip(&stage.whirl).filter_map(|(of, torque)| Some((of.tilts.get(mode)?, torque)));
+        let carried = self
+            .bearings
+            .iter()
+            .zip(&stage.whirl)
+            .filter_map(|(of, torque)| Some((of.tilts.get(mode)?, torque)));
         carried.fold(force, |force, (tilt, torque)| force + tilt.dot(torque))
     }
 

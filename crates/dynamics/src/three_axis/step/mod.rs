@@ -326,7 +326,12 @@ impl IntegrationStep<'_> {
     }
 
     /// Stores the canonical rates P of all modes at a node, if they turn rotors against the hub.
-    pub(super) fn store_canonical_rates(&self, modes: &[ModeMemory], node: usize, optional: &mut OptionalStages) {
+    pub(super) fn store_canonical_rates(
+        &self,
+        modes: &[ModeMemory],
+        node: usize,
+        optional: &mut OptionalStages,
+    ) {
         if self.bearings.is_some_and(|bearings| bearings.has_tilts()) {
             optional.rotors.modal_rates.clear();
             optional.rotors.modal_rates.extend(modes.iter().map(|memory| memory.rate[node]));

@@ -66,8 +66,8 @@ impl Mount {
     fn mode(&self, frequency: Frequency, (p, a): (Vector, Vector), body: &RigidBody<'_>) -> ClampedMode {
         let three = |v: Vector| [v.x, v.y, v.z].map(|component| Finite::new(component).unwrap_or_default());
         // Integral of r (p + a x r)' dm. That of r (a x r)' is its product with [a]'.
-        let moments = body.mass * body.centre * p.transpose()
-            + body.second_moment() * a.cross_matrix().transpose();
+        let moments =
+            body.mass * body.centre * p.transpose() + body.second_moment() * a.cross_matrix().transpose();
         let shape = |position: &[Finite; 3]| Shape {
             translation: three(p + a.cross(&vector(position))),
             rotation: three(a),
@@ -124,8 +124,12 @@ impl Mount {
         }
         match (&self.stiffness, self.translation, self.rocking) {
             (None, Some(_), Some(_)) => {}
-            (None, None, _) => return fault("translation", "must be given, with `rocking`, or a `stiffness`"),
-            (None, _, None) => return fault("rocking", "must be given, with `translation`, or a `stiffness`"),
+            (None, None, _) => {
+                return fault("translation", "must be given, with `rocking`, or a `stiffness`");
+            }
+            (None, _, None) => {
+                return fault("rocking", "must be given, with `translation`, or a `stiffness`");
+            }
             (Some(_), Some(_), _) => return fault("translation", "must be left out with a `stiffness`"),
             (Some(_), _, Some(_)) => return fault("rocking", "must be left out with a `stiffness`"),
             (Some(given), None, None) => {
@@ -137,7 +141,10 @@ impl Mount {
         }
         let basis = self.basis();
         if Cholesky::new(basis.tr_mul(&(body.mass_matrix() * &basis))).is_none() {
-            return fault("axis", "must leave rotations about which the appendage has inertia: give it an `inertia`");
+            return fault(
+                "axis",
+                "must leave rotations about which the appendage has inertia: give it an `inertia`",
+            );
         }
         if self.modes(body).is_none() {
             let why = format!(
