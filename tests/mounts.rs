@@ -224,7 +224,7 @@ fn wheel_lines(changes: &[(&str, &str)]) -> [f64; 2] {
 
 /// The right model, and those that leave something out, by the same keys. Source: `tests/golden/optics.py`.
 #[test]
-fn wrong_models_are_told_apart() {
+fn wrong_models_give_other_lines() {
     let points = "points = [\"rotor\", \"hub\", \"hub\"]\n";
     let harmonic = "imbalance = { harmonics = [{ order = 2.0, torque = 1.5e-8 }] }";
     let imbalance = "imbalance = { static = [3.6e-6, 0, 0], dynamic = [1.2e-7, 0, 0], phase = \"-90 deg\" }";

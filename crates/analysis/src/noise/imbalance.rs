@@ -13,7 +13,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::image_contrast::ImageBlur;
-use super::lines::{LineLoop, OutputLines, SineLoad, SpectralLine};
+use super::lines::LineLoop;
+use super::spectral_line::{OutputLines, SineLoad, SpectralLine};
 use super::speed_grid::{ResonantSpeed, resonant_speeds, whirl_speeds};
 use super::window_rms::WindowRms;
 use super::windows::Window;

@@ -11,9 +11,9 @@ use flexsc_formats::document::ConfigError;
 use flexsc_formats::reader_units::number;
 use nalgebra::{Complex, DMatrix};
 
-use super::lines::{OutputLines, SineLoad, SpectralLine};
 use super::motion::OutputRow;
 use super::period_rows::{ForcedMotion, PeriodRows, Piece, joined};
+use super::spectral_line::{OutputLines, SineLoad, SpectralLine};
 use crate::margins::frequency_response::{FrequencyResponse, modulus, unit_circle};
 use crate::open_loop::attitude_rows::seconds;
 use crate::open_loop::{LoopParts, TransferMatrices};
