@@ -35,6 +35,7 @@ mod line_of_sight;
 mod linear;
 mod linear_poles;
 mod model;
+mod mounts;
 mod orbit_rows;
 mod orbits;
 mod outside;

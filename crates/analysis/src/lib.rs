@@ -1,5 +1,6 @@
 //! Analyses of a scenario or a run: linear models, mode tables, limit cycles, stability.
 
+pub mod body_poles;
 pub mod bound;
 pub mod budget;
 pub mod damping;

@@ -32,7 +32,7 @@ impl MountedLine {
         Some(Self {
             direction: line.direction(),
             offsets: rotations(&line.point).zip(sensor).map(|(there, here)| there - here).collect(),
-            optics: (!line.optics.is_empty()).then(|| line.sensitivity(body)),
+            optics: (!line.optics.is_empty()).then(|| line.sensitivity(body).besides_hub(body)),
         })
     }
 

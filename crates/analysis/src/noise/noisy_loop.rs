@@ -284,7 +284,7 @@ impl NoisyLoop {
 }
 
 /// Returns the spectral radius of a loop when it is closed.
-fn stable_radius(opened: &OpenLoop) -> Result<f64, NoiseError> {
+pub(super) fn stable_radius(opened: &OpenLoop) -> Result<f64, NoiseError> {
     let first = opened.signals.first().map_or("", |signal| &signal.name);
     let failed = || NoiseError::Unstable(UnstableLoop::with_unknown_poles(first));
     let closed = opened.transfer.sensitivity().ok_or_else(failed)?;

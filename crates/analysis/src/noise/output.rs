@@ -29,6 +29,14 @@ pub fn outputs(parts: &LoopParts<'_>) -> (Vec<Signal>, Vec<OutputRow>) {
     all.into_iter().unzip()
 }
 
+/// Returns the index of the output of a name, or an error with the names that there are.
+pub fn output_index(outputs: &[Signal], name: &str) -> Result<usize, String> {
+    outputs.iter().position(|output| output.name == name).ok_or_else(|| {
+        let all: Vec<&str> = outputs.iter().map(|output| output.name.as_str()).collect();
+        format!("signal must be `all` or some of {}, got {name}", all.join(", "))
+    })
+}
+
 /// Returns the pointing error about each of three axes: the rotation of the hub, or, where the modes do not act back on
 /// the rotation, that of the mean axes.
 fn error_rows(scenario: &Scenario, order: usize) -> Vec<(Signal, OutputRow)> {

@@ -30,27 +30,6 @@ pub struct Schedule {
     mirrors: Vec<i64>,
 }
 
-/// Period of a loop without noise, and of its law (fs).
-pub struct PeriodTimes {
-    /// Period after which the loop repeats.
-    pub period: i64,
-    /// Period of the law.
-    pub step: i64,
-}
-
-impl PeriodTimes {
-    /// Returns the times of a loop.
-    ///
-    /// # Errors
-    /// See [`Schedule::new`].
-    pub fn new(parts: &LoopParts<'_>) -> Result<Self, ConfigError> {
-        let order = parts.body.a.nrows();
-        let filter = parts.parts.attitude.as_ref().map(|filter| AttitudeRows::new(filter, order));
-        let Schedule { step, period, .. } = Schedule::new(parts, filter.as_ref(), &[])?;
-        Ok(Self { period, step })
-    }
-}
-
 /// First column of the draws of each source, and the source.
 pub struct Draws<'a> {
     first: Vec<usize>,

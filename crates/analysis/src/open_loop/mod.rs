@@ -186,6 +186,20 @@ impl<'a> LoopParts<'a> {
         Ok(Self { scenario, body, actuators, parts, law, opened, mirrors: Vec::new() })
     }
 
+    /// Returns the parts of the same loop with the wheels that points of the structure carry at a speed (rad/s); `None` if there are
+    /// none.
+    ///
+    /// # Errors
+    /// See [`OpenLoop::from_scenario`].
+    pub(crate) fn at_wheel_speed(&self, speed: f64) -> Result<Option<Self>, ConfigError> {
+        if self.scenario.study.carried_rotors.is_empty() {
+            return Ok(None);
+        }
+        let body = BodyMatrices::new(LinearModel::at_wheel_speed(self.scenario, speed)?)?;
+        let law = AxisLaws::new(self.scenario, &body)?;
+        Ok(Some(Self { body, law, ..self.clone() }))
+    }
+
     /// Returns the parts of the same loop, cut open at a point.
     pub(crate) fn opened_at(self, opened: LoopBreak) -> Self {
         Self { opened, ..self }

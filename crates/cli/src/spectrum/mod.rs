@@ -31,7 +31,7 @@ use crate::result_files::ResultOutput;
 use crate::results::{Results, show, with_scenario_name};
 use crate::row_table::{Column, column, print_rows, print_table};
 use crate::{say, scenario};
-use named_mode::NamedMode;
+use named_mode::ShownModes;
 use required_index::RequiredIndex;
 use waterfall::OutputWaterfall;
 use welch::{LogPart, WelchEstimate, estimates};
@@ -85,7 +85,7 @@ pub struct SpectrumResults {
     window_s: Option<f64>,
     /// Angle of a pixel (rad), if one is given.
     pixel: Option<f64>,
-    modes: Vec<NamedMode>,
+    modes: ShownModes,
 }
 
 /// Computes the noise of a scenario's loop.
@@ -122,10 +122,12 @@ pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResul
             estimates(&part, &noisy, &outputs)?
         }
     };
+    let speeds = report.wheels.iter().flat_map(|wheels| &wheels.speed_rad_s);
+    let fastest = speeds.copied().fold(0.0, f64::max);
     let required = report.outputs.iter().map(|output| RequiredIndex::on_output(scenario, &output.output));
     Ok(SpectrumResults {
         required: required.collect(),
-        modes: NamedMode::all(scenario),
+        modes: ShownModes::new(scenario, fastest),
         window_s: args.window,
         pixel: args.pixel,
         over_speed: args.speeds.is_some(),

@@ -76,7 +76,8 @@ fn sixty_degrees_by_four_wheels() {
 /// are those of both codes.
 #[test]
 fn the_same_with_friction() {
-    let bearing = Bearing { inertia: 0.04, viscous: 5e-5, coulomb: 0.01, breakaway: 0.01, lines: Vec::new() };
+    let bearing =
+        Bearing { inertia: 0.04, viscous: 5e-5, coulomb: 0.01, breakaway: 0.01, ..Bearing::default() };
     let contacts = turn(wheels(40.0), vec![bearing; 4], RUBBING);
     assert_eq!(contacts.len(), 6, "{contacts:?}");
     for ((found, wheel, direction), (time, expected)) in contacts
