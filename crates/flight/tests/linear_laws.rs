@@ -273,7 +273,7 @@ fn a_filter_without_measurements_loses_lock_after_its_window() {
 
 #[test]
 fn the_rate_of_the_field_is_that_of_the_last_two_samples() {
-    let mut field = FieldRate::NONE;
+    let mut field = FieldRate::new(Ticks { whole: 3, part: 0 });
     let at = |milliseconds: i64| Ticks { whole: 0, part: milliseconds * 1_000_000_000_000 };
     field.take(at(100), &Vector3::new(1e-5, 2e-5, -3e-5));
     assert!(!field.has_rate && field.rate == Vector3::ZERO);
