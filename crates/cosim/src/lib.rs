@@ -32,12 +32,14 @@ mod journal_values;
 mod library;
 mod moment;
 mod parameters;
+mod platform;
 mod units;
 mod variable;
 mod variable_table;
 mod xml;
 
 pub use archive::fmu_bytes;
+pub use platform::Platform;
 pub use content::{FmuContent, FmuPart};
 pub use controller_run::ControllerRun;
 pub use cosimulation::{CoSimulation, StepResult};

@@ -409,3 +409,15 @@ fn replay(plan: &Plan<'_>) -> String {
     );
     include_str!("../files/cfs/replay.c").replace("TABLES", &tables)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::shortened;
+
+    #[test]
+    fn names_with_equal_starts_stay_different() {
+        assert_eq!(shortened("observer", 11), "observer");
+        let [one, other] = ["earth_observer_day", "earth_observer_night"].map(|name| shortened(name, 11));
+        assert!(one != other && one.starts_with("earth_o") && one.len() == 11, "{one} {other}");
+    }
+}
