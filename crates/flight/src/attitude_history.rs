@@ -214,7 +214,8 @@ impl AttitudeHistory {
         observations: &mut [DelayedObservation],
     ) -> Correction {
         let mut correction: Correction = Correction::NONE;
-        if !self.add_interval(now, reading, entries, observations) {
+        let is_added: bool = self.add_interval(now, reading, entries, observations);
+        if !is_added {
             return correction;
         }
         let mut early: usize = 0;
