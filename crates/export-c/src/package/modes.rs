@@ -196,6 +196,10 @@ fn init(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
         let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
         let _ = writeln!(text, "    start_filter(state, now, {identity}, {zero});");
     }
+    if let Some(unit) = &modes.field {
+        let field = initialiser(&unit.field, prefix);
+        let _ = writeln!(text, "    state->field = ({prefix}_field_rate){field};");
+    }
     text.push_str("    memcpy(state->modes, mode_list, sizeof state->modes);\n");
     if !modes.tables.exits.is_empty() {
         text.push_str("    memcpy(state->exits, exit_list, sizeof state->exits);\n");
