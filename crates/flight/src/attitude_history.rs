@@ -9,6 +9,7 @@ use crate::attitude_filter::{AttitudeBiasFilter, GyroNoise};
 use crate::attitude_gate::AttitudeGate;
 use crate::attitude_observation::{AttitudeObservation, Correction};
 use crate::binary64::infinity;
+use crate::maths::min;
 use crate::reading_status::ReadingStatus;
 use crate::ticks::Ticks;
 use crate::vector3::Vector3;
@@ -86,6 +87,8 @@ pub struct AttitudeHistory {
     pub least_variance: f64,
     /// Exposure of the last correction that left no improbable measurements to count; before the first one, the start.
     pub confirmed: Ticks,
+    /// Variance (rad²/s²) by which that of the bias is inflated at most: that of the start.
+    pub most_bias_inflation: f64,
     /// True after the clock was set back, until a measurement has corrected the filter with an inflated covariance.
     pub is_unsure: bool,
     /// Number of gyro readings in a row that were older than the last one.
@@ -126,6 +129,7 @@ impl AttitudeHistory {
             improbable: 0,
             least_variance: 0.0,
             confirmed: time,
+            most_bias_inflation: filter.covariance.rows[3][3],
             is_unsure: false,
             setbacks: 0,
             refused: [0; REFUSAL_COUNTERS],
@@ -326,11 +330,13 @@ impl AttitudeHistory {
         let most_nis: f64 = if self.is_unsure { -1.0 } else { self.gate.most_nis };
         let mut correction: Correction = self.correct_at_exposure(&observation, most_nis, entries);
         if correction.status == ReadingStatus::Improbable && self.is_reaccepted(&observation) {
-            // As uncertain as the innovation shows, and the bias as if it had drifted since the last correction.
+            // As uncertain as the innovation shows, and the bias as if it had drifted since the last correction, but no more than at the
+            // start: after a gyro that spiked the bias is none the worse.
             let seconds: f64 = observation.exposed.since(self.confirmed).seconds();
             observation.angle_inflation = correction.innovation.norm_squared();
             if seconds > 0.0 && !self.is_unsure {
-                observation.bias_inflation = observation.angle_inflation / (seconds * seconds);
+                observation.bias_inflation =
+                    min(observation.angle_inflation / (seconds * seconds), self.most_bias_inflation);
             }
             correction = self.correct_at_exposure(&observation, infinity(), entries);
             if correction.status == ReadingStatus::Accepted {

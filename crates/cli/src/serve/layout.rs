@@ -17,7 +17,7 @@ pub const STATUS: &[&str] = &["none", "held", "new"];
 const HOLD: usize = CommandQuantity::ALL.len();
 /// Quantities of commands in the order of their codes, and that answer.
 const QUANTITIES: &[&str] = &{
-    let mut words = ["hold"; HOLD + 1];
+    let mut words = ["held"; HOLD + 1];
     let mut code = 0;
     while code < HOLD {
         words[code] = CommandQuantity::LABELS[code];
@@ -130,7 +130,7 @@ impl PacketLayout {
     /// Returns the fields of the packet with the commands.
     pub fn command_fields(&self) -> Vec<Field> {
         let meaning =
-            "quantity of the command about the axis; hold about all axes, if the commands in force stay";
+            "quantity of the command about the axis; held about all axes, if the commands in force stay";
         let words = FieldType::Word(QUANTITIES);
         let mut quantity = Field::new("command.quantity", words, "", meaning);
         let mut value =
