@@ -35,10 +35,13 @@ fn an_fmu_holds_the_libraries_of_several_platforms() {
     dir.write("b.dll", "of windows");
     let libraries = "--library linux64=a.so x86_64-windows=b.dll";
     for (version, folders) in [("2", ["linux64", "win64"]), ("3", ["x86_64-linux", "x86_64-windows"])] {
-        dir.run(&format!("export-fmu relay-fixed.toml --fmi {version} {libraries} -o {version}.fmu")).exits(0);
+        dir.run(&format!("export-fmu relay-fixed.toml --fmi {version} {libraries} -o {version}.fmu"))
+            .exits(0);
         // Names are not compressed.
         let bytes = dir.read(&format!("{version}.fmu"));
-        for path in [format!("binaries/{}/flexsc.so", folders[0]), format!("binaries/{}/flexsc.dll", folders[1])] {
+        for path in
+            [format!("binaries/{}/flexsc.so", folders[0]), format!("binaries/{}/flexsc.dll", folders[1])]
+        {
             assert!(bytes.windows(path.len()).any(|part| part == path.as_bytes()), "{path}");
         }
     }

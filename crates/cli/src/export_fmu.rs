@@ -80,9 +80,9 @@ type StatedLibrary = (Option<&'static Platform>, PathBuf);
 fn library_of_platform(text: &str) -> Result<StatedLibrary, String> {
     match text.split_once('=') {
         // A path may have the sign too.
-        Some((name, path)) if !name.contains(['/', '\\', '.']) => {
-            Platform::from_name(name).map(|of| (Some(of), PathBuf::from(path))).map_err(|error| error.to_string())
-        }
+        Some((name, path)) if !name.contains(['/', '\\', '.']) => Platform::from_name(name)
+            .map(|of| (Some(of), PathBuf::from(path)))
+            .map_err(|error| error.to_string()),
         _ => Ok((None, PathBuf::from(text))),
     }
 }

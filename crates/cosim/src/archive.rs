@@ -41,7 +41,8 @@ pub fn fmu_bytes(
         if binaries.iter().any(|(other, _)| *other == path) {
             return Err(CoSimulationError::refused(format!("there are two libraries for {folder}")));
         }
-        let packed = |error| CoSimulationError::refused(format!("cannot unpack the library of FMUs: {error}"));
+        let packed =
+            |error| CoSimulationError::refused(format!("cannot unpack the library of FMUs: {error}"));
         binaries.push((path, unpacked(library).map_err(packed)?));
     }
     let mut files = vec![("modelDescription.xml".to_owned(), description.as_bytes())];

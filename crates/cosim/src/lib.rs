@@ -39,7 +39,6 @@ mod variable_table;
 mod xml;
 
 pub use archive::fmu_bytes;
-pub use platform::Platform;
 pub use content::{FmuContent, FmuPart};
 pub use controller_run::ControllerRun;
 pub use cosimulation::{CoSimulation, StepResult};
@@ -47,5 +46,6 @@ pub use error::CoSimulationError;
 pub use fmi_version::FmiVersion;
 pub use fmu_run::FmuRun;
 pub use library::find_library;
+pub use platform::Platform;
 pub use variable::{Causality, ClockRole, ValueKind, Variable, VariableStart};
 pub use variable_table::VariableTable;

@@ -115,7 +115,8 @@ pub fn export_fmu(
     let content = content.map_err(fmu_error)?;
     let unread = |error| wrong(format!("cannot read the library of FMUs, {}: {error}", library.display()));
     let library = fs::read(&library).map_err(unread)?;
-    let bytes = aside(py, move |_| fmu_bytes(&content, &[(Platform::host()?, library)], version))?.map_err(fmu_error)?;
+    let bytes = aside(py, move |_| fmu_bytes(&content, &[(Platform::host()?, library)], version))?
+        .map_err(fmu_error)?;
     write(&path, &bytes)
 }
 

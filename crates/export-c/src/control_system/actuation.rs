@@ -105,6 +105,11 @@ pub(super) fn are_wheels(kind: &ActuatorKind) -> bool {
     matches!(kind, ActuatorKind::Wheels(_))
 }
 
+/// Returns the moment of inertia of each of a set of reaction wheels (kg m²); `None` of other actuators.
+pub(super) fn wheel_inertia(kind: &ActuatorKind) -> Option<f64> {
+    if let ActuatorKind::Wheels(wheels) = kind { Some(wheels.inertia.get()) } else { None }
+}
+
 pub(super) fn are_jets(kind: &ActuatorKind) -> bool {
     matches!(kind, ActuatorKind::Jets(_))
 }

@@ -1,12 +1,12 @@
 //! Momentum stored in the rotors, as laws, conditions of modes and the unloading of wheels read it.
 
 use flexsc_core::Scenario;
-use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_flight::vector3::Vector3;
 use flexsc_flight::wheel_momentum;
 
 use super::Channel;
+use super::actuation::wheel_inertia;
 
 /// Origin of the stored momentum.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,14 +28,11 @@ impl StoredMomentum {
     /// Returns the stored momentum of a scenario's rotors.
     pub(super) fn new(scenario: &Scenario) -> Self {
         let members = scenario.actuator.members();
-        let mut executing = members.iter().filter(|member| member.executes());
-        if executing.clone().any(|member| matches!(&*member.kind, ActuatorKind::ControlMomentGyros(_))) {
+        let mut executing = members.iter().filter(|member| member.executes()).map(|member| &*member.kind);
+        if executing.clone().any(|kind| kind.offers().turns_with_gimbals) {
             return Self::Input;
         }
-        let inertia = executing.find_map(|member| match &*member.kind {
-            ActuatorKind::Wheels(wheels) => Some(wheels.inertia.get()),
-            _ => None,
-        });
+        let inertia = executing.find_map(wheel_inertia);
         match scenario.study.wheels.as_ref().zip(inertia) {
             Some((wheels, inertia)) => Self::Wheels { axes: wheels.flight_axes().to_vec(), inertia },
             None => Self::None,

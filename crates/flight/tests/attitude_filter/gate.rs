@@ -146,7 +146,11 @@ fn a_false_reading_leaves_no_trace() {
         flight.run(99);
         assert_eq!(flight.cycle(gyro, |_| ()), [ReadingStatus::Unsound, ReadingStatus::Accepted]);
         flight.run(300);
-        assert!(flight.error() < 1e-12 && flight.estimator.history.refused[..2] == [1, 0], "{:e}", flight.error());
+        assert!(
+            flight.error() < 1e-12 && flight.estimator.history.refused[..2] == [1, 0],
+            "{:e}",
+            flight.error()
+        );
     }
 }
 
