@@ -41,7 +41,7 @@ pub struct KnownRotors {
 pub struct UnloadingCall {
     /// Start of the cycle.
     pub now: Instant,
-    /// What is known of the rotors.
+    /// Speeds and momentum of the rotors, as the control system knows them.
     pub rotors: KnownRotors,
     /// Magnetic field in body axes (T), as last measured; `None` without a field.
     pub field: Option<[f64; 3]>,
@@ -91,7 +91,7 @@ pub struct ControlDecision {
     pub axes: Vec<AxisDecision>,
     /// Target attitude from which angles are counted.
     pub origin: Orientation,
-    /// What is known of the rotors.
+    /// Speeds and momentum of the rotors, as the control system knows them.
     pub rotors: KnownRotors,
     /// Torque that the actuator is asked for about each axis (N m).
     pub demanded_torque: [f64; 3],

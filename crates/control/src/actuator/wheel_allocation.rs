@@ -25,7 +25,7 @@ pub enum AllocationCriterion {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Allocation {
     axes: Vec<Vector>,
-    /// The same axes as flight code has them.
+    /// Unit axes as flight code has them.
     flight_axes: Vec<Vector3>,
     /// Share of each wheel, with the torque of the last allocation, at first 0.
     wheels: Vec<AllocatedWheel>,
