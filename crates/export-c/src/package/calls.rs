@@ -139,12 +139,7 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     if let Some(unit) = &laws.rate_filter {
         rate_calls::sample(plan, unit, text);
     }
-    let unloading = actuation_calls::UnloadedWheels {
-        actuation: &laws.actuation,
-        stored: &laws.stored,
-        entries: laws.estimator.as_ref().map(|unit| unit.entries.len()),
-    };
-    actuation_calls::unload(plan, &unloading, None, text);
+    unload(plan, laws, text);
     let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[laws.step_index()]));
     if let Some(unit) = &laws.estimator {
         let _ = writeln!(
@@ -177,6 +172,16 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
         actuation_calls::jets(&laws.actuation, laws.commands_changes(), "    ", "output->", text);
     }
     text.push_str("}\n");
+}
+
+/// Writes the function that unloads the wheels.
+fn unload(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
+    let unloading = actuation_calls::UnloadedWheels {
+        actuation: &laws.actuation,
+        stored: &laws.stored,
+        entries: laws.estimator.as_ref().map(|unit| unit.entries.len()),
+    };
+    actuation_calls::unload(plan, &unloading, None, text);
 }
 
 /// Writes the steps of the laws about the axes.

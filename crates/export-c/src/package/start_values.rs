@@ -42,10 +42,11 @@ pub fn definition(plan: &Plan<'_>, text: &mut String) {
     if plan.run_start.is_none() {
         return;
     }
-    let row = |(name, numbers): (&str, Vec<f64>)| match &numbers[..] {
-        [number] => format!("    .{name} = {}", initialiser(number, plan.prefix)),
-        _ => {
-            let each: Vec<String> = numbers.iter().map(|number| initialiser(number, plan.prefix)).collect();
+    let row = |(name, numbers): (&str, Vec<f64>)| {
+        let each: Vec<String> = numbers.iter().map(|number| initialiser(number, plan.prefix)).collect();
+        if let [number] = &each[..] {
+            format!("    .{name} = {number}")
+        } else {
             format!("    .{name} = {{ {} }}", each.join(", "))
         }
     };
