@@ -142,6 +142,8 @@ mod flight_exports;
 #[cfg(feature = "flight-code")]
 mod flight_guests;
 #[cfg(feature = "flight-code")]
+mod flight_lockstep;
+#[cfg(feature = "flight-code")]
 mod flight_pages;
 #[cfg(feature = "flight-code")]
 mod flight_parameters;

@@ -48,7 +48,7 @@ use flexsc_scenario::Scenario;
 use relay_setup::RunSetup;
 use requirement_monitors::RequirementMonitors;
 
-pub use control_trace::{ControlCall, ControlDecision, ModeTrial, SensorSample, UnloadingCall};
+pub use control_trace::{ControlCall, ControlDecision, KnownRotors, ModeTrial, SensorSample, UnloadingCall};
 pub use error::SimulationError;
 pub use plant::AppliedTorque;
 pub use quantities::{QuantityField, QuantityGroup};
@@ -215,7 +215,7 @@ impl Simulation {
         if self.clock.take_bearing_event() || self.loads.due == Some(now) {
             self.end_requirement_segment();
             self.loads.set_magnetic_field(now, self.sensors.magnetic_field(self.plant.truth()));
-            self.loads.apply_due_changes(now, self.plant.truth());
+            self.loads.apply_due_changes(now, self.plant.truth(), &self.estimation.estimates);
             self.trace_unloading(now);
             self.begin_segment(record)?;
         }

@@ -145,7 +145,7 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
             axis += 1;
             law.decide(now, DecisionCause::Timeout, &goal, &estimates[axis - 1]).command
         });
-        let demands = distribution.demands(commands, &estimates, || wheels.stored_momentum(now));
+        let demands = distribution.demands(commands, &estimates, |_| wheels.stored_momentum(now));
         wheels.command(now, &demands, rate.into());
         let mut wrench = Wrench::default();
         wheels.apply(now, &mut wrench);
