@@ -90,7 +90,7 @@ const PREFIXES: [(&str, f64, f64); 6] = [
 ];
 
 /// Names of keys that are angular frequencies, and of those that are speeds of rotors.
-const FREQUENCIES: [&str; 2] = ["frequenc", "bandwidth"];
+const FREQUENCIES: [&str; 4] = ["frequenc", "bandwidth", "mount.translation", "mount.rocking"];
 const SPEED: &str = "speed";
 
 impl ReaderUnits {
@@ -172,7 +172,7 @@ fn last_name(path: &str) -> &str {
 }
 
 fn is_frequency(path: &str) -> bool {
-    FREQUENCIES.iter().any(|own| last_name(path).contains(own))
+    FREQUENCIES.iter().any(|own| last_name(path).contains(own) || path.ends_with(own))
 }
 
 /// Units of times on an axis, with their sizes (s) and the longest axis (s) that has each.

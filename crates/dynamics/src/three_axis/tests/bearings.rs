@@ -32,7 +32,7 @@ fn body(modes: usize) -> FlexibleBody {
 }
 
 fn bearing(coulomb: f64, breakaway: f64) -> Bearing {
-    Bearing { inertia: INERTIA, viscous: 5e-5, coulomb, breakaway, lines: Vec::new() }
+    Bearing { inertia: INERTIA, viscous: 5e-5, coulomb, breakaway, lines: Vec::new(), tilts: Vec::new() }
 }
 
 /// Simulation of a body with rotors, with records of motor work and slip changes.
