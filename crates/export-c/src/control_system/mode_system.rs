@@ -11,6 +11,7 @@ use flexsc_flight::mode_supervisor::{ModeSupervisor, ModeTest};
 use flexsc_flight::quaternion::Quaternion;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
+use flexsc_flight_precision::Precision;
 
 use super::actuation::{Actuation, Executing, are_jets, are_magnetorquers, are_wheels};
 use super::attitude_unit::{AttitudeUnit, quaternion, vector, vector_words};
@@ -138,6 +139,7 @@ pub struct ModeSystem {
     moved: Option<(Vector3, Quaternion)>,
     /// Inputs and outputs of a step.
     layout: Arc<StepLayout>,
+    precision: Precision,
 }
 
 impl ModeSystem {
@@ -190,6 +192,7 @@ impl ModeSystem {
             moves_angles,
             moved: None,
             layout,
+            precision: scenario.flight_precision,
         })
     }
 
@@ -199,6 +202,11 @@ impl ModeSystem {
         if let Some(unit) = &mut self.estimator {
             unit.start_at_identity(now);
         }
+    }
+
+    /// Returns the precision in which the laws compute.
+    pub(super) fn precision(&self) -> Precision {
+        self.precision
     }
 
     /// Returns the shortest period of the laws (s).
@@ -320,12 +328,12 @@ impl ModeSystem {
         let readings = self.inputs.readings(now, inputs, self.estimator.as_ref());
         let ModeTables { modes, exits, steps, .. } = &mut self.tables;
         let ModeTest { has_changed, is_chattering, .. } =
-            self.supervisor.test(now, &readings, modes, exits, steps);
+            self.precision.test_modes(&mut self.supervisor, now, &readings, modes, exits, steps);
         if has_changed {
             self.start_laws();
             if let Some(unit) = self.estimator.as_ref().filter(|_| self.moves_angles) {
                 let target = ModeInputs::target(inputs);
-                let angle = target.rotation_to(&unit.estimator.attitude(now, &unit.entries));
+                let angle = unit.angle_from(&target, now);
                 self.moved = Some((angle, target));
             }
         }
@@ -351,12 +359,12 @@ impl ModeSystem {
         let mut motion = None;
         if let Some(unit) = &self.estimator {
             let target = quaternion(&mut WordReader::new(inputs));
-            let mut angle = target.rotation_to(&unit.estimator.attitude(now, &unit.entries));
+            let mut angle = unit.angle_from(&target, now);
             // At a change the engine moves the angles from one target to the other.
             if let Some((before, from)) = self.moved.take() {
-                angle = before.plus(&target.rotation_to(&from));
+                angle = self.precision.sum(&before, &self.precision.rotation(&target, &from));
             }
-            let rate = unit.estimator.rate(&unit.entries);
+            let rate = unit.rate();
             let words = |values: [f64; 3]| values.map(f64::to_bits);
             motion = Some([words([angle.x, angle.y, angle.z]), words([rate.x, rate.y, rate.z])]);
         }

@@ -1,5 +1,6 @@
 //! Files of an exported control system: header, source, driver, start-up code of boards, Makefile, vectors and a description.
 
+mod accuracy;
 mod actuation_calls;
 mod b_dot_calls;
 mod calls;
@@ -20,14 +21,16 @@ mod source;
 mod static_files;
 
 use flexsc_core::Scenario;
+use flexsc_flight_precision::Precision;
 use sha2::{Digest, Sha256};
 
 use crate::control_system::{CallLayout, ControlSystem, ExcludedPart};
-use crate::flight_sources::flight_sources;
+use crate::flight_sources::sources_in;
 use crate::self_test::self_tests;
-use crate::translate::{TranslationError, translate};
+use crate::translate::{TranslationError, in_single, translate};
 use crate::vectors::{self, CallVector, VectorError};
 
+pub use accuracy::OutputAccuracy;
 pub use guests::Guest;
 
 /// Numbers of cycles for which the hash of the self-test is exported.
@@ -53,6 +56,8 @@ pub struct Package {
     pub vectors: usize,
     /// Parts of the control loop that are not in the code.
     pub excluded_parts: Vec<ExcludedPart>,
+    /// Outputs in single precision beside those in double precision; none in double precision.
+    pub accuracy: Vec<OutputAccuracy>,
 }
 
 /// Reason for which a control system is not exported.
@@ -100,6 +105,7 @@ struct Plan<'a> {
     parameters: &'a [parameters::FlightParameter],
     /// Name of the mode whose laws are written; `None` of the whole control system.
     mode: Option<&'a str>,
+    precision: Precision,
 }
 
 impl Plan<'_> {
@@ -143,16 +149,22 @@ pub fn export(
         excluded_parts: &excluded_parts,
         parameters: &tuned,
         mode: None,
+        precision: scenario.flight_precision,
     };
+    let in_precision =
+        |text: String| if scenario.flight_precision.is_double() { text } else { in_single(&text) };
     let (functions, state) = match &system {
         ControlSystem::Modes(own) => (modes::functions(&plan, own), modes::state(&plan, own)),
         _ => (calls::functions(&plan), header::state(&plan)),
     };
-    let translation = translate(&flight_sources(), &source::roots(&system, &functions), prefix)
-        .map_err(ExportError::Translation)?;
+    let functions = in_precision(functions);
+    let sources = sources_in(scenario.flight_precision);
+    let translation =
+        translate(&sources, &source::roots(&system, &functions), prefix).map_err(ExportError::Translation)?;
+    let accuracy = accuracy::of_single(scenario, &vectors);
     let hashes: Vec<(u64, u64)> = HASHED_CYCLES.into_iter().zip(self_tests(&system, HASHED_CYCLES)).collect();
-    let (header, source) =
-        (header::header(&plan, &translation, &state), source::source(&plan, &translation, &functions));
+    let header = in_precision(header::header(&plan, &translation, &state));
+    let source = in_precision(source::source(&plan, &translation, &functions));
     let mut files: Vec<PackageFile> =
         guests.iter().flat_map(|guest| guest.files(&plan, &header, &source)).collect();
     files.extend([
@@ -161,17 +173,19 @@ pub fn export(
         text("driver.c".to_owned(), driver::driver(&plan, &translation.guards)),
         text(format!("{prefix}.icd.json"), interface::interface(&plan, scenario)),
         text("scenario.toml".to_owned(), effective),
-        text("main_loop.c".to_owned(), main_loop::main_loop(&plan)),
+        text("main_loop.c".to_owned(), in_precision(main_loop::main_loop(&plan))),
         text("Makefile".to_owned(), static_files::makefile(prefix, &hashes)),
-        text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len())),
+        text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len(), &accuracy)),
         PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(&vectors) },
     ]);
-    files.extend(parameters::source(&plan).map(|source| text(format!("{prefix}_parameters.c"), source)));
+    files.extend(
+        parameters::source(&plan).map(|source| text(format!("{prefix}_parameters.c"), in_precision(source))),
+    );
     files
         .extend(static_files::board_files().map(|(path, content)| text(path.to_owned(), content.to_owned())));
     files.sort_by(|a, b| a.path.cmp(&b.path));
     let vectors = vectors.len();
-    Ok(Package { files, calls, vectors, excluded_parts })
+    Ok(Package { files, calls, vectors, excluded_parts, accuracy })
 }
 
 fn text(path: String, content: String) -> PackageFile {

@@ -44,9 +44,15 @@ impl CHelper {
         }
     }
 
-    /// Returns the text of the definition.
-    pub(super) fn text(self) -> &'static str {
-        self.definition().1
+    /// Returns the text of the definition, over the bits of a float if `is_single`.
+    pub(super) fn text(self, is_single: bool) -> String {
+        let text = self.definition().1.to_owned();
+        match self {
+            Self::ToBits | Self::FromBits | Self::Abs | Self::Copysign | Self::IsFinite if is_single => {
+                SINGLE_BITS.iter().fold(text, |text, (double, single)| text.replace(double, single))
+            }
+            _ => text,
+        }
     }
 
     fn definition(self) -> (&'static str, &'static str) {
@@ -78,6 +84,14 @@ impl CHelper {
         }
     }
 }
+
+/// Types and masks of the bits of a double, with those of a float.
+const SINGLE_BITS: [(&str, &str); 4] = [
+    ("uint64_t", "uint32_t"),
+    ("UINT64_C(0x7fffffffffffffff)", "UINT32_C(0x7fffffff)"),
+    ("UINT64_C(0x8000000000000000)", "UINT32_C(0x80000000)"),
+    ("UINT64_C(0x7ff0000000000000)", "UINT32_C(0x7f800000)"),
+];
 
 const TO_BITS: &str = "\
 /* Returns the bits of a double. */

@@ -9,6 +9,7 @@ use syn::{Block, Expr, Fields, Generics, ImplItem, Safety, Signature, Type, UseT
 use super::comments::{is_kept, read_docs};
 use super::error::{Outcome, TranslationError, refuse};
 use super::translation::SourceFile;
+use super::types::{IntegerKind, ValueKind};
 
 /// Field of a struct.
 pub(super) struct StructField {
@@ -47,6 +48,8 @@ pub(super) struct Program<'a> {
     pub by_path: HashMap<String, usize>,
     /// Path of an imported name, by module and name.
     pub imports: HashMap<(String, String), String>,
+    /// True of a program in single precision.
+    pub is_single: bool,
 }
 
 impl<'a> Program<'a> {
@@ -58,6 +61,7 @@ impl<'a> Program<'a> {
             items: Vec::new(),
             by_path: HashMap::new(),
             imports: HashMap::new(),
+            is_single: files.iter().any(|file| file.text.contains(": f32")),
         };
         let mut blocks = Vec::new();
         for (index, file) in files.iter().enumerate() {
@@ -67,6 +71,11 @@ impl<'a> Program<'a> {
             program.collect_impl(index, block).map_err(|error| error.in_file(files[index].path))?;
         }
         Ok(program)
+    }
+
+    /// Returns the type of the bits of a number.
+    pub(super) fn bits_kind(&self) -> ValueKind {
+        ValueKind::Integer(if self.is_single { IntegerKind::U32 } else { IntegerKind::U64 })
     }
 
     fn collect_file(&mut self, file: usize, blocks: &mut Vec<(usize, syn::ItemImpl)>) -> Outcome<()> {

@@ -23,6 +23,7 @@ mod prelude;
 mod reach;
 mod refusals;
 mod scopes;
+mod single;
 mod statements;
 mod translation;
 mod types;
@@ -30,4 +31,5 @@ mod writer;
 
 pub use error::TranslationError;
 pub use literals::float_literal;
+pub use single::in_single;
 pub use translation::{SourceFile, Translation, translate};

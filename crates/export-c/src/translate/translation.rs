@@ -35,6 +35,7 @@ pub struct Translation {
     pub declarations: String,
     /// Helpers, constants and static functions for the .c file, in order.
     pub definitions: String,
+    is_single: bool,
     names: BTreeMap<String, String>,
 }
 
@@ -93,12 +94,13 @@ pub fn translate(
     }
     let parts = reach(&program, &functions, &indices)?;
     let mut translation = Translation {
+        is_single: program.is_single,
         includes: INCLUDES.to_owned(),
         guards: GUARDS.replace("PREFIX", names.prefix()),
         ..Translation::default()
     };
     for helper in &parts.helpers {
-        translation.definitions += helper.text();
+        translation.definitions += &helper.text(program.is_single);
         translation.definitions.push('\n');
     }
     for index in &parts.items {
@@ -128,7 +130,7 @@ pub fn translate(
         };
         translation.definitions.push('\n');
     }
-    Ok(translation)
+    Ok(if translation.is_single { translation.in_single() } else { translation })
 }
 
 fn translate_functions(program: &Program<'_>, names: &Names) -> Outcome<Vec<Option<TranslatedFunction>>> {
@@ -150,6 +152,15 @@ fn translate_functions(program: &Program<'_>, names: &Names) -> Outcome<Vec<Opti
 }
 
 impl Translation {
+    /// Returns the translation with floats for doubles.
+    fn in_single(mut self) -> Self {
+        for text in [&mut self.declarations, &mut self.definitions] {
+            *text = super::single::in_single(text);
+        }
+        self.guards = super::single::guards(&self.guards);
+        self
+    }
+
     fn record_names(&mut self, program: &Program<'_>, names: &Names, index: usize) {
         let path = program.path(index);
         let mut record = |group: &str, path: &str, name: &str| {
