@@ -143,6 +143,8 @@ mod flight_guests;
 mod flight_pages;
 #[cfg(feature = "flight-code")]
 mod flight_parameters;
+#[cfg(feature = "flight-code")]
+mod flight_single;
 mod foreign;
 #[cfg(feature = "full")]
 mod foreign_campaigns;

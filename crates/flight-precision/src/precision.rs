@@ -314,7 +314,11 @@ impl Precision {
     ) -> Quaternion {
         match self {
             Self::Double => estimator.attitude(now, entries),
-            Self::Single => Quaternion::double(&estimator.single().attitude(now.single(), &list(entries))),
+            Self::Single => {
+                let since = if now.is_before(estimator.since) { now } else { estimator.since };
+                let latest = &entries[estimator.history.latest()].filter;
+                self.attitude_after(latest, &estimator.reading, now.since(since))
+            }
         }
     }
 
@@ -322,7 +326,9 @@ impl Precision {
     pub fn rate(self, estimator: &AttitudeEstimator, entries: &[AttitudeHistoryEntry]) -> Vector3 {
         match self {
             Self::Double => estimator.rate(entries),
-            Self::Single => Vector3::double(&estimator.single().rate(&list(entries))),
+            Self::Single => {
+                self.difference(&estimator.reading, &entries[estimator.history.latest()].filter.bias)
+            }
         }
     }
 
@@ -330,7 +336,13 @@ impl Precision {
     pub fn deviation(self, estimator: &AttitudeEstimator, entries: &[AttitudeHistoryEntry]) -> Vector3 {
         match self {
             Self::Double => estimator.deviation(entries),
-            Self::Single => Vector3::double(&estimator.single().deviation(&list(entries))),
+            Self::Single => {
+                let variances = entries[estimator.history.latest()].filter.covariance.rows;
+                let [x, y, z] = [0, 1, 2].map(|axis: usize| {
+                    f64::double(&crate::square_root::sqrt(variances[axis][axis].single()))
+                });
+                Vector3 { x, y, z }
+            }
         }
     }
     /// Returns the size of the innovation of the last correction of an estimator (rad).

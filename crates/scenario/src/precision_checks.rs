@@ -1,50 +1,29 @@
-//! Checks of the precision of the flight computer: which parts of a control system compute in single precision.
+//! Checks of the precision of the flight computer.
 
-use flexsc_control::actuator::ActuatorKind;
-use flexsc_control::estimator::EstimatorKind;
-use flexsc_control::law::LawKind;
 use flexsc_formats::document::ConfigError;
 
 use super::ScenarioSpec;
 
-/// Key of the precision.
-const KEY: &str = "flight_precision";
-
 impl ScenarioSpec {
+    /// Adds the errors of parts that compute in double precision only.
     pub(super) fn validate_flight_precision(&self, errors: &mut Vec<ConfigError>) {
         if self.flight_precision.is_double() {
             return;
         }
-        let mut refuse = |part: &str, accepted: &str| {
-            let why = format!("must be `double` with `{part}`: {accepted} can compute in single precision");
-            errors.push(ConfigError::new(KEY, why));
-        };
-        for axis in 0..self.axis_count() {
-            let mut laws = self.law.laws_about(axis).into_iter();
-            let other = laws.find(|placed| {
-                !matches!(placed.law, LawKind::Attitude(_) | LawKind::BDot(_) | LawKind::Open(_))
-            });
-            if let Some(placed) = other {
-                refuse(&placed.key, "the laws `attitude`, `b_dot` and `open`");
-                break;
-            }
-        }
-        match &self.estimator {
-            None => {}
-            Some(EstimatorKind::Attitude(filter)) if filter.elastic.is_none() => {}
-            Some(EstimatorKind::Attitude(_)) => {
-                refuse("estimator.attitude.elastic", "an attitude filter without modes");
-            }
-            Some(other) => refuse(&format!("estimator.{}", other.kind()), "`[estimator.attitude]`"),
-        }
-        if let Some(adaptation) = &self.adaptation {
-            refuse(&format!("adaptation.{}", adaptation.kind()), "a law that is not tuned in the run");
-        }
-        let acts = |kind: &ActuatorKind| {
-            matches!(kind, ActuatorKind::Ideal(_) | ActuatorKind::Wheels(_) | ActuatorKind::Magnetorquers(_))
-        };
-        if let Some(member) = self.actuator.members().iter().find(|member| !acts(&member.kind)) {
-            refuse(&member.key, "the actuators `ideal`, `wheels` and `magnetorquers`");
+        let laws = (0..self.axis_count()).flat_map(|axis| self.law.laws_about(axis));
+        let mut others: Vec<String> = laws
+            .filter(|placed| !placed.law.offers().has_single_precision)
+            .map(|placed| placed.key)
+            .collect();
+        let estimator = self.estimator.iter().filter(|kind| !kind.offers().has_single_precision);
+        others.extend(estimator.map(|kind| format!("estimator.{}", kind.kind())));
+        others.extend(self.adaptation.iter().map(|kind| format!("adaptation.{}", kind.kind())));
+        let members = self.actuator.members();
+        let actuators = members.iter().filter(|member| !member.kind.offers().has_single_precision);
+        others.extend(actuators.map(|member| member.key.clone()));
+        if let Some(part) = others.first() {
+            let why = format!("must be `double`, because `{part}` computes in double precision only");
+            errors.push(ConfigError::new("flight_precision", why));
         }
     }
 }

@@ -53,7 +53,7 @@ impl ActuatorSpec for Magnetorquers {
     }
 
     fn offers(&self) -> ActuatorOffers {
-        ActuatorOffers { turns_with_field: true, ..ActuatorOffers::default() }
+        ActuatorOffers { turns_with_field: true, has_single_precision: true, ..ActuatorOffers::default() }
     }
 
     fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {

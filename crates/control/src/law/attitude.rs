@@ -80,7 +80,8 @@ impl LawSpec for AttitudeLaw {
     }
 
     fn offers(&self) -> LawOffers {
-        LawOffers::new(Some(self.period), EstimateNeeds::Motion)
+        let offers = LawOffers::new(Some(self.period), EstimateNeeds::Motion);
+        LawOffers { has_single_precision: true, ..offers }
     }
 
     /// Returns the usual 5 % of a step.

@@ -40,7 +40,8 @@ impl LawSpec for BDot {
     }
 
     fn offers(&self) -> LawOffers {
-        LawOffers { commands_moments: true, ..LawOffers::new(Some(self.period), EstimateNeeds::Field) }
+        let offers = LawOffers::new(Some(self.period), EstimateNeeds::Field);
+        LawOffers { commands_moments: true, has_single_precision: true, ..offers }
     }
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {

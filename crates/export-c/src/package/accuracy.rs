@@ -17,7 +17,7 @@ pub struct OutputAccuracy {
     pub output: String,
     /// Unit.
     pub unit: String,
-    /// Largest size of the output in double precision; of an attitude, pi.
+    /// Largest size of the output in double precision; 0 of an attitude.
     pub largest: f64,
     /// Largest difference from it; of an attitude, the angle of the rotation between both.
     pub difference: f64,
@@ -48,7 +48,7 @@ pub fn of_single(scenario: &Scenario, vectors: &[CallVector]) -> Vec<OutputAccur
             place += channel.count;
         }
     }
-    let is_moving = |own: &OutputAccuracy| own.largest > 0.0 || own.difference > 0.0;
+    let is_moving = |own: &OutputAccuracy| own.difference > 0.0;
     all.into_iter().flatten().filter(is_moving).collect()
 }
 
@@ -71,7 +71,7 @@ impl OutputAccuracy {
         if let (true, [_, _, _, _]) = (is_unit, double) {
             // The chord of half the angle.
             let chord = each().map(|difference| difference * difference).sum::<f64>().sqrt();
-            (self.largest, self.difference) = (std::f64::consts::PI, self.difference.max(2.0 * chord));
+            self.difference = self.difference.max(2.0 * chord);
             return;
         }
         self.largest = double.iter().fold(self.largest, |most, number| most.max(number.abs()));

@@ -4,6 +4,7 @@ mod accuracy;
 mod actuation_calls;
 mod b_dot_calls;
 mod calls;
+mod choices;
 mod compensator_calls;
 mod driver;
 mod estimator_calls;
@@ -27,7 +28,7 @@ use sha2::{Digest, Sha256};
 use crate::control_system::{CallLayout, ControlSystem, ExcludedPart};
 use crate::flight_sources::sources_in;
 use crate::self_test::self_tests;
-use crate::translate::{TranslationError, in_single, translate};
+use crate::translate::{TranslationError, in_single, translate_pruned};
 use crate::vectors::{self, CallVector, VectorError};
 
 pub use accuracy::OutputAccuracy;
@@ -114,6 +115,11 @@ impl Plan<'_> {
         format!("flexsc {}, scenario {}", env!("CARGO_PKG_VERSION"), self.digest)
     }
 
+    /// Returns the name of the numbers in which the code computes.
+    fn numbers(&self) -> &'static str {
+        if self.precision.is_double() { "doubles" } else { "floats" }
+    }
+
     /// Returns the name in C of a type of the flight code.
     fn type_name(&self, name: &str) -> String {
         format!("{}_{}", self.prefix, snake(name))
@@ -159,8 +165,10 @@ pub fn export(
     };
     let functions = in_precision(functions);
     let sources = sources_in(scenario.flight_precision);
+    let roots = source::roots(&system, &functions);
+    let choices = choices::constant_choices(&system);
     let translation =
-        translate(&sources, &source::roots(&system, &functions), prefix).map_err(ExportError::Translation)?;
+        translate_pruned(&sources, &roots, prefix, &choices).map_err(ExportError::Translation)?;
     let accuracy = accuracy::of_single(scenario, &vectors);
     let hashes: Vec<(u64, u64)> = HASHED_CYCLES.into_iter().zip(self_tests(&system, HASHED_CYCLES)).collect();
     let header = in_precision(header::header(&plan, &translation, &state));

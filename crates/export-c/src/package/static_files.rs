@@ -74,11 +74,11 @@ pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize, accuracy: 
         let _ = writeln!(text, "| {cycles} | {hash:016x} |");
     }
     text.push_str(&table(accuracy, vectors));
-    let numbers = if plan.precision.is_double() { "doubles" } else { "floats" };
     let _ = write!(
         text,
-        "\nEqual bits need IEEE 754 {numbers}, round to nearest, subnormal numbers, no fused multiply-add (`-ffp-contract=off`) and no \
+        "\nEqual bits need IEEE 754 {}, round to nearest, subnormal numbers, no fused multiply-add (`-ffp-contract=off`) and no \
          fast-math. An output must not be compared by bits if it is NaN.\n",
+        plan.numbers()
     );
     text
 }

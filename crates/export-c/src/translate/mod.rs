@@ -20,6 +20,7 @@ mod operators;
 mod order;
 mod paths;
 mod prelude;
+mod pruning;
 mod reach;
 mod refusals;
 mod scopes;
@@ -31,5 +32,6 @@ mod writer;
 
 pub use error::TranslationError;
 pub use literals::float_literal;
+pub use pruning::ConstantChoices;
 pub use single::in_single;
-pub use translation::{SourceFile, Translation, translate};
+pub use translation::{SourceFile, Translation, translate, translate_pruned};

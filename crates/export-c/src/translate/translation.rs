@@ -10,6 +10,7 @@ use super::items::{ItemContent, Program};
 use super::names::{Names, free_name};
 use super::order::by_module;
 use super::prelude::{GUARDS, INCLUDES};
+use super::pruning::ConstantChoices;
 use super::reach::{reach, refuse_recursion};
 use super::writer::push;
 
@@ -78,7 +79,17 @@ pub fn translate(
     roots: &[&str],
     prefix: &str,
 ) -> Result<Translation, TranslationError> {
-    let program = Program::collect(files)?;
+    translate_pruned(files, roots, prefix, &ConstantChoices::default())
+}
+
+/// Translates as [`translate`], without the branches that choices which are constant never take.
+pub fn translate_pruned(
+    files: &[SourceFile<'_>],
+    roots: &[&str],
+    prefix: &str,
+    choices: &ConstantChoices,
+) -> Result<Translation, TranslationError> {
+    let program = Program::collect(files, choices)?;
     let names = Names::new(&program, prefix)?;
     let functions = translate_functions(&program, &names)?;
     refuse_recursion(&program, &functions)?;

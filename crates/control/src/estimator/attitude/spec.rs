@@ -202,6 +202,7 @@ impl EstimatorSpec for AttitudeFilter {
             is_assessed_only: self.watch_only,
             fuses_sensors: true,
             needs_reader: true,
+            has_single_precision: self.elastic.is_none(),
             ..EstimatorOffers::default()
         }
     }
