@@ -13,7 +13,7 @@ fn counts(printed: &str) -> BTreeMap<String, Vec<u64>> {
     for line in printed.lines() {
         let Some((function, rest)) = line.split_once(": at most ") else { continue };
         let numbers =
-            rest.split(|letter: char| !letter.is_ascii_digit()).filter_map(|word| word.parse().ok());
+            rest.split(|letter: char| !letter.is_ascii_digit()).filter_map(|word| word.parse::<u64>().ok());
         counts.entry(function.to_owned()).or_default().extend(numbers);
     }
     counts
