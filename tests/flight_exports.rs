@@ -26,7 +26,7 @@ pub const EXPORTED: [&str; 8] = [
 pub const WITH_MODES: &str = "site-pass";
 
 /// Most vectors of each export.
-pub const CALLS: u64 = 1000;
+pub const CALLS: u64 = 2000;
 
 /// Exported files, by their paths.
 type Files = Vec<(String, Vec<u8>)>;

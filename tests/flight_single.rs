@@ -1,4 +1,4 @@
-//! Control systems in single precision: a study, and exported code with its bits, whose accuracy is told.
+//! Control systems in single precision: a study, and exported code with its bits and its accuracy.
 
 use crate::flight_exports::{hashes, is_installed, make, text};
 use crate::util::Dir;
@@ -50,8 +50,8 @@ fn code_in_single_precision_has_the_bits_of_its_study() {
     }
 }
 
-/// Returns the largest difference from double precision that the description tells of an output.
-fn told(readme: &str, row: &str) -> f64 {
+/// Returns the largest difference from double precision of an output in the description.
+fn difference(readme: &str, row: &str) -> f64 {
     let line =
         readme.lines().find(|line| line.starts_with(row)).unwrap_or_else(|| panic!("no {row}: {readme}"));
     let cell = line.trim_end_matches(" |").rsplit("| ").next().expect("a difference");
@@ -68,8 +68,8 @@ fn the_accuracy_is_that_of_an_independent_conversion() {
         ("| `sample` | `rate` |", 5e-8),
         ("| `step` | `wheel_torque` |", 1.2e-5),
     ] {
-        let told = told(&readme, row);
-        assert!(told > found / 30.0 && told < 3.0 * found, "{row} {told:e}, found {found:e}");
+        let difference = difference(&readme, row);
+        assert!(difference > found / 30.0 && difference < 3.0 * found, "{row} {difference:e}, {found:e}");
     }
 }
 
