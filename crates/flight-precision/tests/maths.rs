@@ -19,7 +19,7 @@ fn units(found: f32, exact: f64) -> f64 {
 }
 
 #[test]
-fn angles_have_an_error_of_two_units_of_the_last_place() {
+fn angles_have_an_error_of_three_units_of_the_last_place() {
     let mut worst = [0.0_f64; 3];
     for x in floats().filter(|x| x.is_finite()) {
         let found = trigonometry::sincos(x);
@@ -29,11 +29,11 @@ fn angles_have_an_error_of_two_units_of_the_last_place() {
         assert_eq!((trigonometry::sin(x), trigonometry::cos(x)), (found.sin, found.cos));
         worst[2] = worst[2].max(units(inverse_trigonometry::atan(x), double_inverse::atan(f64::from(x))));
     }
-    assert!(worst.iter().all(|error| *error < 2.0), "{worst:?}");
+    assert!(worst[0] < 3.0 && worst[1] < 3.0 && worst[2] < 1.0, "{worst:?}");
     // The float nearest to a multiple of pi/2: 16367173 2^72.
-    let nearest = f32::from_bits((((72 + 23) + 127) << 23) | (16_367_173 & 0x7f_ffff));
-    assert!(units(trigonometry::cos(nearest), double::cos(f64::from(nearest))) < 2.0);
-    assert!(units(trigonometry::sin(nearest), double::sin(f64::from(nearest))) < 2.0);
+    let nearest = f32::from_bits((((72 + 23) + 127) << 23) | (0xf9_be45 & 0x7f_ffff));
+    assert!(units(trigonometry::cos(nearest), double::cos(f64::from(nearest))) < 3.0);
+    assert!(units(trigonometry::sin(nearest), double::sin(f64::from(nearest))) < 3.0);
     for x in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
         let found = trigonometry::sincos(x);
         assert!(found.sin.is_nan() && found.cos.is_nan() && trigonometry::tan(x).is_nan());
