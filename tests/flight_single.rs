@@ -16,7 +16,7 @@ fn code_in_single_precision_has_the_bits_of_its_study() {
     if !is_installed("make") || !is_installed("gcc") {
         return;
     }
-    for (name, options) in [("cubesat-day", "--complete"), ("safe-mode", "")] {
+    for (name, options) in [("cubesat-day", "--complete")] {
         let dir = exported(name, options);
         let code = dir.text(&format!("out/{}.c", name.replace('-', "_")));
         assert!(!code.contains("double ") && code.contains("float "), "{name}: doubles are left");
