@@ -76,7 +76,8 @@ fn the_accuracy_is_that_of_an_independent_conversion() {
 #[test]
 fn a_study_in_single_precision_points_as_well_and_has_other_bits() {
     let dir = Dir::with(&["earth-observer"]);
-    let run = |set: &str| dir.run(&format!("simulate earth-observer.toml {set} --log none --json")).exits(0).json();
+    let run =
+        |set: &str| dir.run(&format!("simulate earth-observer.toml {set} --log none --json")).exits(0).json();
     let [double, single] = ["", "--set flight_precision=single"].map(run);
     let error = |run: &serde_json::Value| {
         run["metrics"]["pointing_error_end_rad"].as_f64().expect("a pointing error")
