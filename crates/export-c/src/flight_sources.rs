@@ -16,7 +16,7 @@ macro_rules! sources {
 }
 
 /// Number of files.
-const COUNT: usize = 51;
+const COUNT: usize = 52;
 
 /// Returns the source files of the flight code in a precision.
 pub fn sources_in(precision: Precision) -> Vec<SourceFile<'static>> {
@@ -83,5 +83,6 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "trigonometry",
         "vector3",
         "wheel_allocation",
+        "wheel_momentum",
     ]
 }

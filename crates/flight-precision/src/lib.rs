@@ -7,6 +7,7 @@
 //! holds floats. Time stays in integers; spans become floats.
 
 mod precision;
+mod recent_past;
 mod twin;
 
 pub use precision::Precision;

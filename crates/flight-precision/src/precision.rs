@@ -3,9 +3,8 @@
 use flexsc_flight::attitude_estimator::AttitudeEstimator;
 use flexsc_flight::attitude_filter::{AttitudeBiasFilter, GyroNoise};
 use flexsc_flight::attitude_gate::AttitudeGate;
-use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
+use flexsc_flight::attitude_history::AttitudeHistoryEntry;
 use flexsc_flight::attitude_law::AttitudeFeedback;
-use flexsc_flight::attitude_observation::{AttitudeObservation, Correction};
 use flexsc_flight::axis_motion::{AxisMotion, AxisReference, total_angle};
 use flexsc_flight::b_dot::{FieldRate, opposing_moment};
 use flexsc_flight::biquad::BiquadFilter;
@@ -16,12 +15,12 @@ use flexsc_flight::mode_readings;
 use flexsc_flight::mode_supervisor::{ModeSupervisor, ModeTest, SupervisedExit};
 use flexsc_flight::momentum_unloading::MomentumUnloading;
 use flexsc_flight::quaternion::Quaternion;
-use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_flight::supervised_mode::SupervisedMode;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::torque_distribution;
 use flexsc_flight::vector3::Vector3;
 use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
+use flexsc_flight::wheel_momentum;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -179,63 +178,6 @@ impl Precision {
         }
     }
 
-    /// Judges a gyro reading (rad/s) before it is added to a history.
-    pub fn judge_gyro(
-        self,
-        history: &mut AttitudeHistory,
-        now: Ticks,
-        reading: &Vector3,
-        entries: &mut [AttitudeHistoryEntry],
-    ) -> ReadingStatus {
-        match self {
-            Self::Double => history.judge_gyro(now, reading, entries),
-            Self::Single => ReadingStatus::double(&changed(history, |history| {
-                changed_list(entries, |entries| history.judge_gyro(now.single(), &reading.single(), entries))
-            })),
-        }
-    }
-
-    /// Adds a gyro reading (rad/s) to a history.
-    pub fn add_gyro(
-        self,
-        history: &mut AttitudeHistory,
-        now: Ticks,
-        reading: Vector3,
-        entries: &mut [AttitudeHistoryEntry],
-        observations: &mut [DelayedObservation],
-    ) -> Correction {
-        match self {
-            Self::Double => history.add_gyro(now, reading, entries, observations),
-            Self::Single => Correction::double(&changed(history, |history| {
-                changed_list(entries, |entries| {
-                    changed_list(observations, |observations| {
-                        history.add_gyro(now.single(), reading.single(), entries, observations)
-                    })
-                })
-            })),
-        }
-    }
-
-    /// Adds an observation to a history.
-    pub fn add_observation(
-        self,
-        history: &mut AttitudeHistory,
-        observation: DelayedObservation,
-        entries: &mut [AttitudeHistoryEntry],
-        observations: &mut [DelayedObservation],
-    ) -> Correction {
-        match self {
-            Self::Double => history.add_observation(observation, entries, observations),
-            Self::Single => Correction::double(&changed(history, |history| {
-                changed_list(entries, |entries| {
-                    changed_list(observations, |observations| {
-                        history.add_observation(observation.single(), entries, observations)
-                    })
-                })
-            })),
-        }
-    }
-
     /// Starts an attitude estimator.
     pub fn start_estimator(
         self,
@@ -257,50 +199,6 @@ impl Precision {
                     gate.single(),
                     entries,
                 )
-            })),
-        }
-    }
-
-    /// Lets an estimator take a gyro reading (rad/s).
-    pub fn take_gyro(
-        self,
-        estimator: &mut AttitudeEstimator,
-        [now, latency]: [Ticks; 2],
-        reading: Vector3,
-        entries: &mut [AttitudeHistoryEntry],
-        observations: &mut [DelayedObservation],
-    ) -> ReadingStatus {
-        match self {
-            Self::Double => estimator.take_gyro(now, latency, reading, entries, observations),
-            Self::Single => ReadingStatus::double(&changed(estimator, |estimator| {
-                changed_list(entries, |entries| {
-                    changed_list(observations, |observations| {
-                        let (now, latency) = (now.single(), latency.single());
-                        estimator.take_gyro(now, latency, reading.single(), entries, observations)
-                    })
-                })
-            })),
-        }
-    }
-
-    /// Lets an estimator take an observation.
-    pub fn take_observation(
-        self,
-        estimator: &mut AttitudeEstimator,
-        [now, latency]: [Ticks; 2],
-        observation: &AttitudeObservation,
-        entries: &mut [AttitudeHistoryEntry],
-        observations: &mut [DelayedObservation],
-    ) -> ReadingStatus {
-        match self {
-            Self::Double => estimator.take_observation(now, latency, observation, entries, observations),
-            Self::Single => ReadingStatus::double(&changed(estimator, |estimator| {
-                changed_list(entries, |entries| {
-                    changed_list(observations, |observations| {
-                        let (now, latency) = (now.single(), latency.single());
-                        estimator.take_observation(now, latency, &observation.single(), entries, observations)
-                    })
-                })
             })),
         }
     }
@@ -345,6 +243,7 @@ impl Precision {
             }
         }
     }
+
     /// Returns the size of the innovation of the last correction of an estimator (rad).
     pub fn innovation_size(self, innovation: &Vector3) -> f64 {
         match self {
@@ -373,6 +272,19 @@ impl Precision {
         match self {
             Self::Double => rate.take(now, field),
             Self::Single => changed(rate, |rate| rate.take(now.single(), &field.single())),
+        }
+    }
+
+    /// Returns the momentum (N m s) of wheels with this inertia (kg m²), by their speeds and the estimated rate (rad/s).
+    pub fn stored_momentum(self, axes: &[Vector3], inertia: f64, speeds: &[f64], rate: &Vector3) -> Vector3 {
+        match self {
+            Self::Double => wheel_momentum::stored(axes, inertia, speeds, rate),
+            Self::Single => Vector3::double(&crate::wheel_momentum::stored(
+                &list(axes),
+                inertia.single(),
+                &list(speeds),
+                &rate.single(),
+            )),
         }
     }
 

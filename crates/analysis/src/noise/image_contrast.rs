@@ -10,8 +10,8 @@ use std::f64::consts::PI;
 
 use flexsc_numerics::quadrature::nodes;
 
-use super::lines::SpectralLine;
 use super::noisy_loop::NoisyLoop;
+use super::spectral_line::SpectralLine;
 use super::windows::{Functional, j0};
 
 /// Harmonics of the fastest motion that the contrast over an exposure contains.

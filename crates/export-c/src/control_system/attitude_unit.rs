@@ -10,7 +10,7 @@ use flexsc_core::record::AttitudeEstimate;
 use flexsc_flight::attitude_estimator::AttitudeEstimator;
 use flexsc_flight::attitude_filter::GyroNoise;
 use flexsc_flight::attitude_gate::AttitudeGate;
-use flexsc_flight::attitude_history::{AttitudeHistoryEntry, DelayedObservation};
+use flexsc_flight::attitude_history::{AttitudeHistoryEntry, DelayedObservation, REFUSAL_COUNTERS};
 use flexsc_flight::attitude_observation::{AttitudeObservation, ObservationKind};
 use flexsc_flight::matrix6::Matrix6x3;
 use flexsc_flight::quaternion::Quaternion;
@@ -170,8 +170,11 @@ impl AttitudeUnit {
         let mut outputs =
             vec![attitude(), Channel::real("rate", "Estimated rate (rad/s)", 3, 1.0), status("gyro")];
         outputs.extend(self.correctors.iter().map(|corrector| status(&corrector.name)));
+        let refused =
+            |name: String| Channel::integer(&name, "Number of readings refused since the start", 1, 0);
         outputs.extend([
-            Channel::integer("refused", "Number of readings refused since the start", 1, 0),
+            refused("refused".to_owned()),
+            refused("gyro_refused".to_owned()),
             Channel::real("age", "Time since the last correction, or since the start (s)", 1, 1.0),
             Channel::real("innovation", "Innovation of the last correction, body axes (rad)", 3, 1.0),
             Channel::real(
@@ -182,6 +185,8 @@ impl AttitudeUnit {
             ),
             Channel::real("deviation", "Standard deviation of the attitude about each axis (rad)", 3, 1.0),
         ]);
+        outputs
+            .extend(self.correctors.iter().map(|corrector| refused(format!("{}_refused", corrector.name))));
         let sample = CallLayout {
             name: "sample",
             about: "Takes a sample of the sensors.",
@@ -222,7 +227,7 @@ impl AttitudeUnit {
         if is_valid {
             statuses[0] = precision.take_gyro(estimator, [now, self.gyro.1], rate, entries, observations);
         }
-        for (corrector, status) in self.correctors.iter().zip(&mut statuses[1..]) {
+        for (sensor, (corrector, status)) in (1..).zip(self.correctors.iter().zip(&mut statuses[1..])) {
             let is_valid = words.flag();
             let mut observation = corrector.observation;
             if observation.kind == ObservationKind::Attitude {
@@ -233,7 +238,8 @@ impl AttitudeUnit {
             }
             if is_valid {
                 let times = [now, corrector.latency];
-                *status = precision.take_observation(estimator, times, &observation, entries, observations);
+                *status =
+                    precision.take_observation(estimator, sensor, times, &observation, entries, observations);
             }
         }
         let (attitude, rate) = (self.attitude(now), self.rate());
@@ -241,11 +247,13 @@ impl AttitudeUnit {
         let mut outputs = quaternion_words(&attitude).to_vec();
         outputs.extend(vector_words(&rate));
         outputs.extend(statuses.into_iter().map(|status| status as u64));
-        outputs.extend([estimator.history.refused, self.age(now).to_bits()]);
+        let history = &estimator.history;
+        outputs.extend([history.refusals(), history.refused[0], self.age(now).to_bits()]);
         outputs.extend(vector_words(&estimator.correction.innovation));
         let nis = estimator.correction.nis / AttitudeEstimate::MEASUREMENTS;
         outputs.push(precision.rounded(nis).to_bits());
         outputs.extend(vector_words(&precision.deviation(estimator, entries)));
+        outputs.extend((1..).zip(&self.correctors).map(|(sensor, _)| history.refused[counter(sensor)]));
         outputs
     }
 
@@ -278,6 +286,11 @@ impl AttitudeUnit {
     pub(super) fn deviation_size(&self) -> f64 {
         self.precision.deviation_size(&self.entries[self.estimator.history.latest()].filter)
     }
+}
+
+/// Returns the index of the counter of refused readings of a sensor.
+pub fn counter(sensor: usize) -> usize {
+    sensor.min(REFUSAL_COUNTERS - 1)
 }
 
 /// Returns the quantity that a sensor measures.
