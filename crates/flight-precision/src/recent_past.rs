@@ -9,9 +9,7 @@ use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
 
-use crate::attitude_history::{
-    AttitudeHistoryEntry as SingleEntry, DelayedObservation as SingleObservation,
-};
+use crate::attitude_history::{AttitudeHistoryEntry as SingleEntry, DelayedObservation as SingleObservation};
 use crate::precision::Precision;
 use crate::twin::{Twin, changed};
 
@@ -27,9 +25,13 @@ impl Precision {
         match self {
             Self::Double => history.judge_gyro(now, reading, entries),
             Self::Single => {
-                let status = changed_past(history, |own| own, entries, &mut [], |history, entries, _| {
-                    history.judge_gyro(now.single(), &reading.single(), entries)
-                });
+                let status = changed_past(
+                    history,
+                    |own| own,
+                    entries,
+                    &mut [],
+                    |history, entries, _| history.judge_gyro(now.single(), &reading.single(), entries),
+                );
                 ReadingStatus::double(&status)
             }
         }
@@ -47,11 +49,15 @@ impl Precision {
     ) -> bool {
         match self {
             Self::Double => history.add_interval(now, reading, entries, observations),
-            Self::Single => {
-                changed_past(history, |own| own, entries, observations, |history, entries, observations| {
+            Self::Single => changed_past(
+                history,
+                |own| own,
+                entries,
+                observations,
+                |history, entries, observations| {
                     history.add_interval(now.single(), reading.single(), entries, observations)
-                })
-            }
+                },
+            ),
         }
     }
 
