@@ -94,7 +94,7 @@ const SINGLE_BITS: [(&str, &str); 4] = [
 ];
 
 const TO_BITS: &str = "\
-/* Returns the bits of a double. */
+/* Returns the bits of a number. */
 static uint64_t f64_to_bits(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
@@ -102,7 +102,7 @@ static uint64_t f64_to_bits(double x) {
 }
 ";
 const FROM_BITS: &str = "\
-/* Returns the double of bits. */
+/* Returns the number with these bits. */
 static double f64_from_bits(uint64_t bits) {
     double x;
     memcpy(&x, &bits, sizeof x);

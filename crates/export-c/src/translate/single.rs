@@ -10,7 +10,8 @@ const WORDS: [(&str, &str); 3] =
     [("double", "float"), ("binary64_infinity", "binary32_infinity"), ("binary64_nan", "binary32_nan")];
 
 /// Parts of the guards about doubles, with those about floats.
-const GUARDS: [(&str, &str); 7] = [
+const GUARDS: [(&str, &str); 8] = [
+    ("doubles are not evaluated", "floats are not evaluated"),
     ("if doubles follow", "if floats follow"),
     (" * double, and none", " * float, and none"),
     ("DBL_MANT_DIG != 53", "FLT_MANT_DIG != 24"),
