@@ -166,17 +166,21 @@ fn contraction_and_fast_mathematics_are_found() {
     assert!(!output.status.success() && text(&output).contains("call "), "{}", text(&output));
 }
 
-/// Returns bytes of code and the largest stack frame on each board, as `make size` prints them.
+/// Returns bytes of code and the largest stack with callees on each board, and bytes of the state, as `make size` prints them.
 fn sizes(printed: &str) -> Vec<u64> {
-    let mut sizes = Vec::new();
+    let (mut sizes, mut state) = (Vec::new(), 0);
     for board in printed.split("-mcpu=").skip(1) {
         let row = board.lines().find(|line| line.ends_with("-size.o")).expect("a row of sizes");
         let bytes: u64 =
             row.split_whitespace().next().and_then(|cell| cell.parse().ok()).expect("bytes of code");
-        let frames = board.lines().filter_map(|line| line.strip_suffix("\tstatic")?.rsplit_once('\t'));
-        let frame = frames.filter_map(|(_, bytes)| bytes.parse().ok()).max().expect("stack frames");
-        sizes.extend([bytes, frame]);
+        let number = |line: &str, before: &str| -> Option<u64> {
+            line.split_once(before)?.1.strip_suffix(" bytes")?.parse().ok()
+        };
+        let stack = board.lines().filter_map(|line| number(line, ": stack of ")).max().expect("stacks");
+        state = board.lines().find_map(|line| number(line, "state: ")).expect("the state");
+        sizes.extend([bytes, stack]);
     }
+    sizes.push(state);
     sizes
 }
 

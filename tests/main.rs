@@ -147,6 +147,8 @@ mod flight_lockstep;
 mod flight_pages;
 #[cfg(feature = "flight-code")]
 mod flight_parameters;
+#[cfg(feature = "flight-code")]
+mod flight_single;
 mod foreign;
 #[cfg(feature = "full")]
 mod foreign_campaigns;

@@ -8,8 +8,9 @@ use std::path::Path;
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
 /// The crates of the engine, each above those before it.
-pub const ENGINE: [&str; 15] = [
+pub const ENGINE: [&str; 16] = [
     "flight",
+    "flight-precision",
     "numerics",
     "dynamics",
     "formats",

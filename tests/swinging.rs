@@ -13,6 +13,7 @@ use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::scenario::Scenario;
 use flexsc_flight::attitude_gate::AttitudeGate;
+use flexsc_flight_precision::Precision;
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::traces::{flown, within};
@@ -68,11 +69,18 @@ fn follows_the_oracle(known: FilterModes, given: &str, tolerance: f64) {
     let (read, noise) = (rows(READ), GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 });
     let off = Vector::new(1e-3, -5e-4, 8e-4);
     let prior = Quaternion::new(0.8, 0.36, -0.48, 0.0) * rotation(&off);
-    let filter = AttitudeFilterState::new(prior, Vector::zeros(), [1e-3, 1e-5]);
+    let filter = AttitudeFilterState::new(Precision::Double, prior, Vector::zeros(), [1e-3, 1e-5]);
     let modes = ElasticFilterStates::new(Arc::new(known), &filter.covariance);
     let gate = AttitudeGate { most_rate: 1.0, ..AttitudeGate::default() };
-    let mut history =
-        FilterHistory::new(Instant::START, filter, Some(modes), noise, Span::from_seconds(0.5), gate);
+    let mut history = FilterHistory::new(
+        Instant::START,
+        filter,
+        Some(modes),
+        noise,
+        Span::from_seconds(0.5),
+        gate,
+        Precision::Double,
+    );
     let at = |k: usize, more: f64| Instant::START + Span::from_seconds(0.25 * k as f64 + more);
     let three = |of: &[f64]| Vector::new(of[0], of[1], of[2]);
     let tracker = Matrix3::from_diagonal(&Vector::new(2.4e-5, 2.4e-5, 1.5e-4).map(|noise| noise * noise));

@@ -23,6 +23,9 @@ pub struct ExportCArgs {
     /// Set a key of the scenario, such as law.relay.k_t=0.34
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Precision in which the code, and the study, compute [default: that of the scenario]
+    #[arg(long, value_name = "PRECISION")]
+    precision: Option<PrecisionName>,
     /// Mode of operation whose law is exported, of a scenario with several
     #[arg(long, value_name = "NAME")]
     mode: Option<String>,
@@ -53,6 +56,22 @@ pub enum GuestName {
     Cfs,
     /// F Prime
     Fprime,
+}
+
+/// Precision of the flight computer.
+#[derive(Copy, Clone, PartialEq, clap::ValueEnum)]
+pub enum PrecisionName {
+    /// Doubles, of 64 bits
+    Double,
+    /// Floats, of 32 bits
+    Single,
+}
+
+impl PrecisionName {
+    /// Returns the change of a scenario.
+    fn set(self) -> String {
+        format!("flight_precision={}", if self == Self::Double { "double" } else { "single" })
+    }
 }
 
 impl From<GuestName> for Guest {
@@ -88,7 +107,8 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         let path = args.out.display();
         return Err(CliError::Arguments(format!("-o {path}: must be a directory, and is a file")));
     }
-    let scenario = scenario::load(&args.scenario, &args.set, None)?;
+    let set: Vec<String> = args.set.iter().cloned().chain(args.precision.map(PrecisionName::set)).collect();
+    let scenario = scenario::load(&args.scenario, &set, None)?;
     let scenario = match &args.mode {
         Some(name) => scenario.in_mode(name)?,
         None => scenario,
@@ -104,8 +124,13 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
     let guests: BTreeSet<Guest> = args.guest.iter().map(|name| Guest::from(*name)).collect();
     let guests: Vec<Guest> = guests.into_iter().collect();
     let mode = args.mode.iter().map(|name| format!("--mode {name}"));
-    let changes: Vec<String> = args.set.iter().map(|set| format!("--set {set}")).chain(mode).collect();
+    let changes: Vec<String> = set.iter().map(|set| format!("--set {set}")).chain(mode).collect();
     let origin = ExportOrigin { file: &origin, changes: &changes };
+    if !scenario.flight_precision.is_double() && !guests.is_empty() {
+        let reason = "must be `double` for a `--guest`, whose messages have doubles";
+        let fault = NotExportable::new("flight_precision", reason);
+        return Err(refused(&args.scenario, ExportError::Vectors(VectorError::NotExportable(fault))));
+    }
     let package = package::export(&scenario, origin, &prefix, args.calls as usize, &guests)
         .map_err(|error| refused(&args.scenario, error))?;
     if args.complete
@@ -130,6 +155,9 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         package.calls.iter().map(|call| format!("{prefix}_{}", call.name)).collect::<Vec<_>>().join(", "),
         package.vectors
     );
+    for own in &package.accuracy {
+        eprintln!("{}: at most {:.1e} {} from double precision", own.output, own.difference, own.unit);
+    }
     for part in &package.excluded_parts {
         let what = if part.is_supplied { "input of it" } else { "not part of it" };
         eprintln!("{what}: {}; you must {}", part.key, part.duty);

@@ -123,6 +123,8 @@ pub struct LawOffers {
     pub has_states: bool,
     /// True if the law acts about three axes together.
     pub is_three_axis: bool,
+    /// True if the law also computes in single precision.
+    pub has_single_precision: bool,
 }
 
 impl LawOffers {
@@ -138,6 +140,7 @@ impl LawOffers {
             commands_moments: false,
             has_states: false,
             is_three_axis: false,
+            has_single_precision: false,
         }
     }
 
@@ -237,6 +240,8 @@ pub struct ActuatorOffers {
     pub has_jets: bool,
     /// True if the length of each thruster's pulses is programmed by itself, not by groups.
     pub programs_pulses: bool,
+    /// True if commands are also computed in single precision.
+    pub has_single_precision: bool,
 }
 
 /// Actuator of a scenario: its offers, and its share of the demand.
@@ -276,6 +281,8 @@ pub struct EstimatorOffers {
     pub filters_measurements: bool,
     /// True if the estimator has no use without a law that reads the estimates.
     pub needs_reader: bool,
+    /// True if the estimator also computes in single precision.
+    pub has_single_precision: bool,
 }
 
 impl BodyOffers {

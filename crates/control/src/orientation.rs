@@ -1,6 +1,8 @@
 //! Orientation of a body with one axis or three.
 
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
+use flexsc_numerics::flight_types::to_quaternion;
 use nalgebra::Quaternion;
 
 /// Orientation of a body.
@@ -35,6 +37,18 @@ impl Orientation {
             (Self::Angle(angle), Self::Angle(goal)) => [angle - goal, 0.0, 0.0],
             // All orientations of a run are of the same kind.
             _ => [f64::NAN; 3],
+        }
+    }
+
+    /// Returns the rotation vector to another orientation (rad), as a flight computer of this precision computes it; for one angle, the
+    /// difference about the first axis.
+    pub fn angles_to(&self, other: &Self, precision: Precision) -> [f64; 3] {
+        match (self, other) {
+            (Self::Attitude(from), Self::Attitude(to)) => {
+                let angles = precision.rotation(&to_quaternion(from), &to_quaternion(to));
+                [angles.x, angles.y, angles.z]
+            }
+            _ => other.error_from(self),
         }
     }
 

@@ -1,5 +1,7 @@
 //! Source files of the flight code, which are translated.
 
+use flexsc_flight_precision::{Precision, SOURCES};
+
 use crate::translate::SourceFile;
 
 /// Defines the list of files, each with its text.
@@ -15,6 +17,17 @@ macro_rules! sources {
 
 /// Number of files.
 const COUNT: usize = 52;
+
+/// Returns the source files of the flight code in a precision.
+pub fn sources_in(precision: Precision) -> Vec<SourceFile<'static>> {
+    match precision {
+        Precision::Double => flight_sources().to_vec(),
+        Precision::Single => SOURCES
+            .iter()
+            .map(|(module, text)| SourceFile { path: "crates/flight-precision", module, text })
+            .collect(),
+    }
+}
 
 /// Returns the source files of the flight code.
 pub fn flight_sources() -> [SourceFile<'static>; COUNT] {

@@ -1,6 +1,7 @@
 //! Self-test: a hash over the outputs of many calls with random and extreme inputs, which the exported code repeats.
 
 use flexsc_flight::ticks::Ticks;
+use flexsc_flight_precision::Precision;
 
 use crate::control_system::{CallLayout, Channel, ControlSystem, NumberKind};
 
@@ -10,8 +11,21 @@ pub const BLOCK: u64 = 256;
 pub const EXTREME_BLOCK: u64 = 16;
 /// State of the generator at the start.
 pub const SEED: u64 = 0x9E37_79B9_7F4A_7C15;
-/// Extreme inputs.
-pub const EXTREMES: [u64; 8] = [
+/// Returns the extreme inputs: zeros of both signs, the least and the largest subnormal number, a huge one, infinities, NaN.
+pub fn extremes(precision: Precision) -> [u64; 8] {
+    let [zero, negative_zero, _, _, _, infinity, negative_infinity, nan] = EXTREMES;
+    match precision {
+        Precision::Double => EXTREMES,
+        Precision::Single => {
+            let [least, largest, huge] =
+                [0x0000_0001, 0x007F_FFFF, 0x7E96_7699].map(|bits| f64::from(f32::from_bits(bits)).to_bits());
+            [zero, negative_zero, least, largest, huge, infinity, negative_infinity, nan]
+        }
+    }
+}
+
+/// Extreme inputs in double precision.
+const EXTREMES: [u64; 8] = [
     0x0000_0000_0000_0000,
     0x8000_0000_0000_0000,
     0x0000_0000_0000_0001,
@@ -34,13 +48,15 @@ impl Inputs {
     }
 
     /// Returns the next input of a channel.
-    fn word(&mut self, channel: &Channel, is_extreme: bool) -> u64 {
+    fn word(&mut self, channel: &Channel, extremes: Option<&[u64; 8]>) -> u64 {
         let bits = self.draw();
         match channel.kind {
             NumberKind::Flag => bits & 1,
             NumberKind::Integer(below) => bits % below.max(1),
-            NumberKind::Real if is_extreme && bits.is_multiple_of(8) => EXTREMES[(bits >> 3 & 7) as usize],
             NumberKind::Real => {
+                if let Some(extremes) = extremes.filter(|_| bits.is_multiple_of(8)) {
+                    return extremes[(bits >> 3 & 7) as usize];
+                }
                 let size = match bits & 3 {
                     0 => 1024.0,
                     1 => 1.0 / 1024.0,
@@ -82,7 +98,7 @@ pub fn self_test(system: &ControlSystem, cycles: u64) -> u64 {
 pub fn self_tests<const N: usize>(system: &ControlSystem, cycles: [u64; N]) -> [u64; N] {
     let calls = system.calls();
     let layouts: Vec<_> = calls.iter().map(WordLayout::new).collect();
-    let milliseconds = cycle_milliseconds(system);
+    let (milliseconds, extremes) = (cycle_milliseconds(system), extremes(system.precision()));
     let (mut inputs, mut hash) = (Inputs(SEED), 0xCBF2_9CE4_8422_2325_u64);
     let mut hashes = [hash; N];
     let (mut current, mut words) = (system.clone(), Vec::new());
@@ -97,7 +113,8 @@ pub fn self_tests<const N: usize>(system: &ControlSystem, cycles: [u64; N]) -> [
         let due = |call: &WordLayout<'_>| !call.is_start || cycle % BLOCK == 0;
         for (index, call) in layouts.iter().enumerate().filter(|(_, call)| due(call)) {
             words.clear();
-            words.extend(call.inputs.iter().map(|channel| inputs.word(channel, is_extreme)));
+            let own = is_extreme.then_some(&extremes);
+            words.extend(call.inputs.iter().map(|channel| inputs.word(channel, own)));
             let mut place = 0;
             for channel in &calls[index].inputs {
                 if channel.is_unit && !is_extreme {

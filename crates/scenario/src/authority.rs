@@ -45,7 +45,8 @@ impl ResolvedScenario {
                 ActuatorAuthority { accelerations: most, width: PulseWidth::default(), delay: late }
             }
         };
-        Authority { axis, accelerations, width, delay, threshold: 0.0 }
+        let precision = written.flight_precision;
+        Authority { axis, accelerations, width, delay, threshold: 0.0, precision }
     }
 
     /// Returns the data of the body that its actuators depend on, with groups of jets.
@@ -63,6 +64,7 @@ impl ResolvedScenario {
             nozzles: &self.nozzles,
             period: written.law.cycle(0, "jets").unwrap_or(self.assessment_period),
             tachometer,
+            precision: written.flight_precision,
         }
     }
 

@@ -148,6 +148,7 @@ impl ScenarioSpec {
         self.validate_unloading(errors);
         self.validate_failures(model, errors);
         self.validate_adaptation(offers, errors);
+        self.validate_flight_precision(errors);
         match model.axes() {
             BodyAxes::One(body) => self.validate_one_axis(body, offers, errors),
             BodyAxes::Three(body) => self.validate_three_axis(model, body, offers, errors),

@@ -34,6 +34,7 @@ mod one_mode;
 mod optics;
 mod pace;
 mod plate_mounts;
+mod precision_checks;
 mod quantity_names;
 mod reference_values;
 mod remarks;

@@ -5,6 +5,7 @@ use flexsc_control::actuator::{
     Actuator, ActuatorKind, ActuatorSet, ActuatorTask, Allocation, AssignedMember, AxisActuatorContext,
     BackEmfRate, CarriedRotor, GroupEffect, GyroAxes, ThrusterEffect,
 };
+use flexsc_control::estimator::attitude::FilterSetup;
 use flexsc_control::estimator::{EstimatorKind, adaptive, attitude};
 use flexsc_control::law::{AttitudeProfile, Authority, ErrorBand, Stage, TorqueDistribution};
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel, CommandedQuantity};
@@ -138,7 +139,8 @@ impl ResolvedScenario {
             let jets = study.groups.is_some();
             let mounted = model.three_axis().map(|body| (body, &study.sensor_points[..], jets));
             let setting = spec.setup(&written.sensor, &written.orbit_environment(), cycle, mounted);
-            study.attitude = Some(setting.map_err(|fault| fault.within("estimator.attitude"))?);
+            let setting = setting.map_err(|fault| fault.within("estimator.attitude"))?;
+            study.attitude = Some(FilterSetup { precision: written.flight_precision, ..setting });
         }
         study.set_damping_thresholds(written)?;
         study.mode_bands = study.mode_bands(written);
@@ -170,7 +172,7 @@ impl ResolvedScenario {
         }
         if let Some((wheels, of)) = written.actuator.wheels() {
             let allocation = wheels.allocation().map_err(|fault| fault.within(&of))?;
-            self.wheels = Some(allocation);
+            self.wheels = Some(allocation.with_precision(written.flight_precision));
             self.carried_rotors = wheels.carried_rotors(body).map_err(|fault| fault.within(&of))?;
             let is_observed = wheels.bearing_key().is_some() || written.sensor.tachometer().is_some();
             if model.is_two_way() && is_observed {
@@ -243,12 +245,13 @@ impl ResolvedScenario {
 
     /// Returns the conversion of the laws' commands into torques about the axes.
     pub fn distribution(&self, scenario: &Scenario) -> TorqueDistribution {
-        match scenario.model.axes() {
+        let distribution = match scenario.model.axes() {
             BodyAxes::One(body) => TorqueDistribution::for_one_axis(body.commanded_inertia()),
             BodyAxes::Three(body) => TorqueDistribution::for_three_axes(
                 scenario.law.inertia().map_or_else(|| body.inertia, tensor),
             ),
-        }
+        };
+        distribution.with_precision(scenario.flight_precision)
     }
 
     /// Creates the actuators of a run.
@@ -289,7 +292,7 @@ impl ResolvedScenario {
         };
         let stages = scenario.law.stages().iter().filter(|_| scenario.law.selects_actuators());
         let stages: Vec<_> = stages.map(in_stage).collect();
-        let several = ActuatorSet::new(self.axes.len(), started);
+        let several = ActuatorSet::new(self.axes.len(), started, scenario.flight_precision);
         Box::new(if scenario.law.is_of_modes() && !stages.is_empty() {
             several.in_modes(stages.into_iter().map(|(_, executing)| executing).collect())
         } else {

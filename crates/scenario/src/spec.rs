@@ -13,6 +13,7 @@ use flexsc_control::law::{AttitudeTarget, LawKind, Stages};
 use flexsc_control::one_or_many::OneOrMany;
 use flexsc_control::operation::{ModeTarget, OperatingMode};
 use flexsc_control::sensor::SensorKind;
+use flexsc_flight_precision::Precision;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::load_table::LoadTable;
 use flexsc_numerics::quantity::Positive;
@@ -88,6 +89,9 @@ pub struct ScenarioSpec {
     /// Target of the first mode, at the start of the run.
     #[serde(skip)]
     pub(super) mode_targets: Vec<AttitudeTarget>,
+    /// Precision of the flight computer: its estimator, its laws and the distribution of their commands.
+    #[serde(default, skip_serializing_if = "Precision::is_double")]
+    pub flight_precision: Precision,
     /// The actuator, which executes the commanded torque, or an array of several.
     #[serde(default)]
     pub actuator: OneOrMany<AssignedActuator>,

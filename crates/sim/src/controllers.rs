@@ -6,7 +6,7 @@ use flexsc_control::law::{AxisDecision, Command, Controllers, DecisionCause, Eve
 use flexsc_control::part::{Part, ReportContext};
 use flexsc_control::state_estimate::{DampingStatus, StateEstimate};
 use flexsc_dynamics::guard::GuardCrossing;
-use flexsc_flight::axis_motion::total_angle;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, earlier};
 use flexsc_record::{Record, RecordError, Report};
@@ -32,6 +32,8 @@ pub struct ControlLaws {
     pub objective: AdaptationObjective,
     /// Calls of the control system, if they are recorded.
     pub trace: Option<Vec<ControlCall>>,
+    /// Precision of the flight computer.
+    pub precision: Precision,
 }
 
 /// Decision of the laws at one instant.
@@ -65,6 +67,7 @@ impl ControlLaws {
             external_command_pending: false,
             objective: AdaptationObjective::new(scenario, seed),
             trace: None,
+            precision: scenario.flight_precision,
         }
     }
 
@@ -117,7 +120,7 @@ impl ControlLaws {
             return None;
         }
         if let [roll, pitch, yaw] = estimates {
-            let total = total_angle(roll.angle, pitch.angle, yaw.angle);
+            let total = self.precision.total_angle([roll.angle, pitch.angle, yaw.angle]);
             for estimate in &mut *estimates {
                 estimate.total_angle = total;
             }

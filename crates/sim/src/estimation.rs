@@ -8,6 +8,7 @@ use flexsc_control::estimator::{
 };
 use flexsc_control::sensor::Orientation;
 use flexsc_control::state_estimate::StateEstimate;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 
@@ -35,6 +36,7 @@ pub struct Estimation {
     pub monitor: Option<WindowedEnvelope>,
     /// Shift of the angles (rad) by the last change of their origin, until it is taken.
     pub last_shift: Option<[f64; 3]>,
+    precision: Precision,
 }
 
 impl Estimation {
@@ -49,6 +51,7 @@ impl Estimation {
             next_origin_change: guidance.next_change(Instant::START),
             monitor: scenario.monitor(seed),
             last_shift: None,
+            precision: scenario.flight_precision,
         }
     }
 
@@ -87,10 +90,10 @@ impl Estimation {
     pub fn move_origin(&mut self, now: Instant, guidance: &mut Guidance) {
         guidance.compute_reference(now);
         let origin = guidance.origin(now);
-        let by = self.origin.error_from(&origin);
+        let by = origin.angles_to(&self.origin, self.precision);
         self.estimator.shift_origin(by);
         for (axis, estimate) in self.estimates.iter_mut().enumerate() {
-            estimate.angle += by[axis];
+            estimate.angle = self.precision.rounded(estimate.angle + by[axis]);
         }
         self.origin = origin;
         self.last_shift = Some(by);

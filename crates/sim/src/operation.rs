@@ -6,7 +6,7 @@ use std::sync::Arc;
 use flexsc_control::actuator::ActuatorEvent;
 use flexsc_control::flight_quantity::FlightQuantity;
 use flexsc_control::operation::{ModeChange, ModeFormula, ModeQuantity, ModeReadings, ModeSequence};
-use flexsc_flight::mode_readings::{distance, largest_size, norm};
+use flexsc_flight::mode_readings::{largest_size, norm};
 use flexsc_flight::mode_supervisor::MOST_CHANGES;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
@@ -100,7 +100,7 @@ impl Simulation {
         let Some(mut sequence) = self.operation.sequence.take() else { return Ok(()) };
         let before = sequence.active();
         let readings = sequence.read(now, &RunView { modes: Some(&sequence), ..self.read_view() });
-        let change = sequence.test(now, &readings);
+        let change = sequence.test(now, &readings, self.laws.precision);
         self.trace_mode(now, sequence.active(), readings);
         self.operation.sequence = Some(sequence);
         let Some(change) = change else { return Ok(()) };
@@ -136,9 +136,12 @@ impl Simulation {
 
 impl ModeReadings for RunView<'_> {
     fn value(&self, quantity: ModeQuantity) -> f64 {
+        let precision = self.laws.precision;
         match quantity.formula() {
-            ModeFormula::Norm(vector) => return norm(&self.known(vector)),
-            ModeFormula::Distance(one, other) => return distance(&self.known(one), &self.known(other)),
+            ModeFormula::Norm(vector) => return precision.norm(&self.known(vector)),
+            ModeFormula::Distance(one, other) => {
+                return precision.distance(&self.known(one), &self.known(other));
+            }
             ModeFormula::LargestSize(list) => {
                 let values = self.known(list);
                 return if values.is_empty() { f64::NAN } else { largest_size(&values) };

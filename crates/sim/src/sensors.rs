@@ -6,6 +6,7 @@ use flexsc_control::sensor::{Orientation, Reading, SensorKind, Truth};
 use flexsc_flight::b_dot::FieldRate;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::flight_types::{from_vector3, to_vector3};
 use flexsc_numerics::random::Seed;
@@ -35,6 +36,7 @@ pub struct Sensors {
     last_angles: Option<(Orientation, Orientation, [f64; 3])>,
     /// Last measured magnetic field with its rate of change.
     field: FieldRate,
+    precision: Precision,
     /// Rate of change of the measured magnetic field in body axes (T/s); `None` before the second sample.
     pub field_rate: Option<Vector>,
     /// Next sampling instant of all sensors; `None` with a continuous sensor.
@@ -79,6 +81,7 @@ impl Sensors {
             measured: vec![[0.0; 2]; axes],
             last_angles: None,
             field: FieldRate::new(field_source.map_or(Ticks::default(), |(_, most_age)| most_age)),
+            precision: scenario.flight_precision,
             field_rate: None,
             next: sensors.iter().filter_map(|due| due.next).min(),
             schedules: sensors,
@@ -211,7 +214,7 @@ impl Sensors {
             any = true;
             self.last_readings[index] = now;
             if let Some(sight) = reading.sight.filter(|_| due.is_field_source) {
-                self.field.take(now.ticks(), &to_vector3(&sight.vector));
+                self.precision.take_field(&mut self.field, now.ticks(), &to_vector3(&sight.vector));
                 self.field_rate = self.field.has_rate.then(|| from_vector3(&self.field.rate));
             }
             let rates = reading.rate.or_else(|| due.differentiated_rates(now, reading, &truth));

@@ -291,7 +291,8 @@ fn drawn_over(
             story.requirements.push(requirement::index_of(&story, name)?);
         }
     }
-    let is_of_all = |name: &FigureName| matches!(name, FigureName::Kind(kind) if kind.name() == requirement::SPEC.name);
+    let is_of_all =
+        |name: &FigureName| matches!(name, FigureName::Kind(kind) if kind.name() == requirement::SPEC.name);
     if asked.iter().any(is_of_all) {
         story.requirements.clear();
     }

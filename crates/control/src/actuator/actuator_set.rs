@@ -1,6 +1,7 @@
 //! Several actuators in one: each executes its share of the demand about each axis, or unloads the wheels or gyros.
 
 use flexsc_dynamics::wrench::Wrench;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, Report};
@@ -48,7 +49,11 @@ fn shared(demand: Demand, share: f64) -> Demand {
 
 impl ActuatorSet {
     /// Creates the actuators of a body with `axes` axes, before their first command.
-    pub fn new(axes: usize, members: Vec<(&ActuatorKind, &ActuatorTask, Box<dyn Actuator>)>) -> Self {
+    pub fn new(
+        axes: usize,
+        members: Vec<(&ActuatorKind, &ActuatorTask, Box<dyn Actuator>)>,
+        precision: Precision,
+    ) -> Self {
         let mut several = Self {
             executing: Vec::with_capacity(members.len()),
             keepers: Vec::new(),
@@ -70,7 +75,7 @@ impl ActuatorSet {
                     several.executing.push((actuator, *shares));
                 }
                 ActuatorTask::Unloads(unloads) => {
-                    several.unloader = Some(UnloaderState::new(unloads, kind, actuator));
+                    several.unloader = Some(UnloaderState::new(unloads, kind, actuator, precision));
                 }
             }
         }

@@ -31,7 +31,7 @@ impl ActuatorSpec for Ideal {
     }
 
     fn offers(&self) -> ActuatorOffers {
-        ActuatorOffers { follows_waveform: true, ..ActuatorOffers::default() }
+        ActuatorOffers { follows_waveform: true, has_single_precision: true, ..ActuatorOffers::default() }
     }
 
     fn requires(&self, _: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {

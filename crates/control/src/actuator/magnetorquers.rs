@@ -5,7 +5,7 @@
 
 use flexsc_dynamics::wrench::Wrench;
 use flexsc_flight::b_dot::limited_moment;
-use flexsc_flight::magnetorquers::moment_of_torque;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::flight_types::{from_vector3, to_vector3};
 use flexsc_numerics::quantity::Positive;
@@ -43,8 +43,8 @@ impl Magnetorquers {
 }
 
 impl ActuatorSpec for Magnetorquers {
-    fn start(&self, settings: &[AxisActuatorContext], _: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
-        Box::new(MagnetorquersState::new(self, settings))
+    fn start(&self, settings: &[AxisActuatorContext], on: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
+        Box::new(MagnetorquersState::new(self, settings, on.precision))
     }
 
     /// Returns the authority in the largest field.
@@ -53,7 +53,7 @@ impl ActuatorSpec for Magnetorquers {
     }
 
     fn offers(&self) -> ActuatorOffers {
-        ActuatorOffers { turns_with_field: true, ..ActuatorOffers::default() }
+        ActuatorOffers { turns_with_field: true, has_single_precision: true, ..ActuatorOffers::default() }
     }
 
     fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
@@ -78,6 +78,7 @@ impl ActuatorSpec for Magnetorquers {
 #[derive(Clone, Debug)]
 pub struct MagnetorquersState {
     limits: [f64; 3],
+    precision: Precision,
     settings: Vec<AxisActuatorContext>,
     /// Magnetic field in the body's axes (T), as last measured; `None` before that.
     field: Option<Vector>,
@@ -91,9 +92,10 @@ pub struct MagnetorquersState {
 
 impl MagnetorquersState {
     /// Creates the torquers before their first command.
-    fn new(torquers: &Magnetorquers, settings: &[AxisActuatorContext]) -> Self {
+    fn new(torquers: &Magnetorquers, settings: &[AxisActuatorContext], precision: Precision) -> Self {
         Self {
-            limits: [0, 1, 2].map(|axis| torquers.moment.about(axis).get()),
+            limits: [0, 1, 2].map(|axis| precision.rounded(torquers.moment.about(axis).get())),
+            precision,
             settings: settings.to_vec(),
             field: None,
             demanded: Vector::zeros(),
@@ -122,12 +124,13 @@ impl MagnetorquersState {
         self.demanded = torque;
         let field = self.field.unwrap_or_default();
         let [torque, field, limits] = [torque, field, self.limits.into()].map(|v: Vector| to_vector3(&v));
-        self.moment = from_vector3(&moment_of_torque(&torque, &field, &limits));
+        self.moment = from_vector3(&self.precision.moment_of_torque(&torque, &field, &limits));
     }
 
     /// Returns the torque in the measured field (N m).
     fn torque_in_field(&self) -> Vector {
-        self.field.map_or_else(Vector::zeros, |field| self.moment.cross(&field))
+        let [moment, field] = [self.moment, self.field.unwrap_or_default()].map(|v| to_vector3(&v));
+        from_vector3(&self.precision.torque_of_moment(&moment, &field))
     }
 
     /// Commands the demanded moments (A m²), each limited separately.
@@ -234,7 +237,7 @@ mod tests {
             waveform: None,
             share: 1.0,
         };
-        MagnetorquersState::new(&torquers, &[0, 1, 2].map(setting))
+        MagnetorquersState::new(&torquers, &[0, 1, 2].map(setting), Precision::Double)
     }
 
     #[test]

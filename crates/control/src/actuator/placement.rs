@@ -1,5 +1,6 @@
 //! Actuators on a body: the resolved data that they depend on, their authority, and their response to commands.
 
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Span;
 
@@ -23,6 +24,8 @@ pub struct ActuatorPlacement<'a> {
     pub period: Span,
     /// Tachometer of the reaction wheels, with the seed of its noise.
     pub tachometer: Option<(&'a Tachometer, Seed)>,
+    /// Precision of the flight computer.
+    pub precision: Precision,
 }
 
 /// Authority of one actuator about an axis, acting alone.

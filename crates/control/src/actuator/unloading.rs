@@ -6,6 +6,7 @@
 //! orbit: over an orbit h decreases at the mean rate k (1 - <b b'>), with b the field's direction.
 
 use flexsc_flight::momentum_unloading::MomentumUnloading;
+use flexsc_flight_precision::Precision;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::flight_types::{from_vector3, to_vector3};
@@ -177,6 +178,7 @@ fn validate_jets(jets: &Jets) -> Option<ConfigError> {
 pub(super) struct UnloaderState {
     pub actuator: Box<dyn Actuator>,
     law: MomentumUnloading,
+    precision: Precision,
     period: Span,
     /// Start of the next cycle.
     next: Instant,
@@ -186,11 +188,17 @@ pub(super) struct UnloaderState {
 
 impl UnloaderState {
     /// Creates the unloader before its first cycle.
-    pub fn new(unloads: &UnloadingTask, kind: &ActuatorKind, actuator: Box<dyn Actuator>) -> Self {
+    pub fn new(
+        unloads: &UnloadingTask,
+        kind: &ActuatorKind,
+        actuator: Box<dyn Actuator>,
+        precision: Precision,
+    ) -> Self {
         let (period, phase) = unloads.cycle(kind);
         Self {
             actuator,
             law: unloads.flight_law(kind),
+            precision,
             period: period.unwrap_or(Span::TICK),
             next: super::first(phase),
             cycle: UnloadingCycle::default(),
@@ -227,7 +235,8 @@ impl UnloaderState {
         if begins {
             self.next = now + self.period;
             if !is_commanded {
-                let demanded = from_vector3(&self.law.torque(&to_vector3(&stored)));
+                let demanded =
+                    from_vector3(&self.precision.unloading_torque(&mut self.law, &to_vector3(&stored)));
                 self.actuator.command(now, &demanded.data.0[0].map(Demand::Torque), [0.0; 3]);
             }
         }

@@ -1,7 +1,8 @@
 //! Allocation of a three-axis torque to wheels: the sum of axis times torque over the wheels is the demanded torque.
 
 use flexsc_flight::vector3::Vector3;
-use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
+use flexsc_flight::wheel_allocation::AllocatedWheel;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::flight_types::to_vector3;
 use nalgebra::{Cholesky, Matrix3};
@@ -32,6 +33,7 @@ pub struct Allocation {
     /// Cancelling torques of four wheels: the largest has size 1, the first that is not 0 is positive.
     null: Option<[f64; 4]>,
     choice: AllocationCriterion,
+    precision: Precision,
 }
 
 impl Allocation {
@@ -51,7 +53,19 @@ impl Allocation {
         };
         let wheels = axes.iter().enumerate().map(wheel).collect();
         let flight_axes = axes.iter().map(to_vector3).collect();
-        Some(Self { axes: axes.to_vec(), flight_axes, wheels, null, choice })
+        let precision = Precision::Double;
+        Some(Self { axes: axes.to_vec(), flight_axes, wheels, null, choice, precision })
+    }
+
+    /// Returns the allocation on a flight computer of this precision.
+    #[must_use]
+    pub fn with_precision(self, precision: Precision) -> Self {
+        Self { precision, ..self }
+    }
+
+    /// Returns the precision of the flight computer.
+    pub fn precision(&self) -> Precision {
+        self.precision
     }
 
     /// Returns the wheels' axes.
@@ -72,16 +86,16 @@ impl Allocation {
     /// Returns the torques of all wheels that give the torque `demanded` about the three axes (N m).
     pub fn torques(&self, demanded: &Vector) -> Vec<f64> {
         let mut allocated = self.clone();
-        allocated.allocate(demanded, f64::INFINITY);
+        allocated.allocate(demanded, &Vector::zeros(), f64::INFINITY);
         allocated.wheels.iter().map(|wheel| wheel.torque).collect()
     }
 
-    /// Gives the wheels the torques that give the torque `demanded` about the three axes (N m), or less about the same axis
-    /// if one of them would exceed `limit` (N m).
-    pub fn allocate(&mut self, demanded: &Vector, limit: f64) {
-        let is_least_largest = self.is_least_largest();
-        allocate(&mut self.wheels, &to_vector3(demanded), is_least_largest);
-        limit_torques(&mut self.wheels, limit);
+    /// Gives the wheels the torques that sum up to the torque `against` without the torque `demanded` about the three axes (N m), or
+    /// less about the same axis if one of them would exceed `limit` (N m).
+    pub fn allocate(&mut self, against: &Vector, demanded: &Vector, limit: f64) {
+        let (is_least_largest, precision) = (self.is_least_largest(), self.precision);
+        let sum = precision.difference(&to_vector3(against), &to_vector3(demanded));
+        precision.allocate(&mut self.wheels, &sum, is_least_largest, limit);
     }
 
     /// Returns the wheels as flight code has them, with the torques of the last allocation, at first 0.

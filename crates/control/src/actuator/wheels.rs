@@ -152,6 +152,7 @@ impl ActuatorSpec for Wheels {
     fn offers(&self) -> ActuatorOffers {
         let limit = self.torque.map_or(TorqueLimit::Unlimited, |_| TorqueLimit::Constant);
         ActuatorOffers {
+            has_single_precision: true,
             limits: [limit; 3],
             is_delayed: self.delay.get() > 0.0,
             has_reaction_wheels: true,

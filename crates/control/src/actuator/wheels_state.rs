@@ -181,7 +181,7 @@ impl WheelsState {
 
     /// Commands all wheels with the torques that give the body the demanded torque, within the torque limit.
     fn drive_all(&mut self, now: Instant, rigid: &Vector) {
-        self.allocation.allocate(&(self.against - self.demanded), self.torque_limit);
+        self.allocation.allocate(&self.against, &self.demanded, self.torque_limit);
         self.bias_speeds(rigid);
         for index in 0..self.wheels.len() {
             let torque = self.compensated(index, self.allocation.flight_wheels()[index].torque, rigid);

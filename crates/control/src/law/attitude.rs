@@ -6,6 +6,7 @@
 
 use flexsc_flight::attitude_law::AttitudeFeedback;
 use flexsc_flight::biquad::BiquadFilter;
+use flexsc_flight_precision::Precision;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{asymmetry, tensor};
 use flexsc_numerics::quantity::{Finite, Positive};
@@ -72,13 +73,15 @@ impl LawSpec for AttitudeLaw {
         Box::new(AttitudeLawState {
             law: self.flight_law(authority),
             filters: self.flight_filters(),
+            precision: authority.precision,
             tuned: f64::NAN,
             spec: self.clone(),
         })
     }
 
     fn offers(&self) -> LawOffers {
-        LawOffers::new(Some(self.period), EstimateNeeds::Motion)
+        let offers = LawOffers::new(Some(self.period), EstimateNeeds::Motion);
+        LawOffers { has_single_precision: true, ..offers }
     }
 
     /// Returns the usual 5 % of a step.
@@ -167,6 +170,7 @@ impl AttitudeLaw {
 struct AttitudeLawState {
     law: AttitudeFeedback,
     filters: Vec<BiquadFilter>,
+    precision: Precision,
     /// Value of the parameter tuned last.
     tuned: f64,
     spec: AttitudeLaw,
@@ -198,7 +202,7 @@ impl Law for AttitudeLawState {
         state_estimate: &StateEstimate,
     ) -> ControlOutput {
         let (motion, reference) = (state_estimate.flight_motion(), goal.flight_reference(now));
-        let acceleration = self.law.step(&motion, &reference, &mut self.filters);
+        let acceleration = self.precision.feedback(&mut self.law, &motion, &reference, &mut self.filters);
         ControlOutput {
             command: Command::Acceleration(acceleration),
             until: Some(now + self.spec.period),
@@ -246,7 +250,15 @@ mod tests {
         let law: AttitudeLaw = flexsc_formats::document::from_text(&text).unwrap();
         assert_eq!(law.validate(), None);
         let width = PulseWidth::default();
-        law.start(&Authority { axis: 0, accelerations: [most; 2], width, delay: 0.0, threshold: 0.0 })
+        let precision = Precision::Double;
+        law.start(&Authority {
+            axis: 0,
+            accelerations: [most; 2],
+            width,
+            delay: 0.0,
+            threshold: 0.0,
+            precision,
+        })
     }
 
     fn command(law: &mut dyn Law, angle: f64, rate: f64, acceleration: f64) -> f64 {

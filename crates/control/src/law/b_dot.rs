@@ -4,7 +4,7 @@
 //! -k (dB/dt) x B, which is -k B² times the part of w perpendicular to the field. Each axis needs only its own
 //! component of the field, as a magnetometer measures it.
 
-use flexsc_flight::b_dot::opposing_moment;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
@@ -34,12 +34,14 @@ impl LawSpec for BDot {
         conditions.magnetorquers
     }
 
-    fn start(&self, _: &Authority) -> Box<dyn Law> {
-        Box::new(BDotState { law: *self, gain: self.gain.get(), tuned: f64::NAN })
+    fn start(&self, authority: &Authority) -> Box<dyn Law> {
+        let precision = authority.precision;
+        Box::new(BDotState { law: *self, gain: self.gain.get(), precision, tuned: f64::NAN })
     }
 
     fn offers(&self) -> LawOffers {
-        LawOffers { commands_moments: true, ..LawOffers::new(Some(self.period), EstimateNeeds::Field) }
+        let offers = LawOffers::new(Some(self.period), EstimateNeeds::Field);
+        LawOffers { commands_moments: true, has_single_precision: true, ..offers }
     }
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
@@ -66,6 +68,7 @@ impl LawSpec for BDot {
 struct BDotState {
     law: BDot,
     gain: f64,
+    precision: Precision,
     /// Value of the parameter tuned last.
     tuned: f64,
 }
@@ -81,7 +84,7 @@ impl Law for BDotState {
         state_estimate: &StateEstimate,
     ) -> ControlOutput {
         ControlOutput {
-            command: Command::Moment(opposing_moment(self.gain, state_estimate.field_rate)),
+            command: Command::Moment(self.precision.opposing_moment(self.gain, state_estimate.field_rate)),
             until: Some(now + self.law.period),
             guards: Guards::NONE,
         }

@@ -1,6 +1,6 @@
 //! Conversion of the laws' commands to demands on the actuator: accelerations become torques J a + w x (J w + h).
 
-use flexsc_flight::torque_distribution;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::flight_types::{to_matrix3, to_vector3};
 use nalgebra::Matrix3;
@@ -15,17 +15,24 @@ pub struct TorqueDistribution {
     /// Inertia tensor, without the rotors' own about their axes (kg m²); of a one-axis body only the first element is
     /// used.
     inertia: Matrix3<f64>,
+    precision: Precision,
 }
 
 impl TorqueDistribution {
     /// Creates the distribution of a one-axis body with this inertia (kg m²).
     pub fn for_one_axis(inertia: f64) -> Self {
-        Self { inertia: Matrix3::from_diagonal_element(inertia) }
+        Self::for_three_axes(Matrix3::from_diagonal_element(inertia))
     }
 
     /// Creates the distribution of a three-axis body with this inertia tensor (kg m²).
     pub fn for_three_axes(inertia: Matrix3<f64>) -> Self {
-        Self { inertia }
+        Self { inertia, precision: Precision::Double }
+    }
+
+    /// Returns the distribution on a flight computer of this precision.
+    #[must_use]
+    pub fn with_precision(self, precision: Precision) -> Self {
+        Self { precision, ..self }
     }
 
     /// Returns the inertia tensor in the model (kg m²).
@@ -66,7 +73,7 @@ impl TorqueDistribution {
             );
         let [acceleration, rate, stored] =
             [accelerations, rate, stored].map(|v| to_vector3(&Vector::from(v)));
-        let torque = torque_distribution::torque(&to_matrix3(&self.inertia), &acceleration, &rate, &stored);
+        let torque = self.precision.torque(&to_matrix3(&self.inertia), &acceleration, &rate, &stored);
         [torque.x, torque.y, torque.z]
     }
 }

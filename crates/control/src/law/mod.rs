@@ -44,6 +44,7 @@ mod torque_conditions;
 mod tunable;
 
 use flexsc_dynamics::guard::Guard;
+use flexsc_flight_precision::Precision;
 use flexsc_formats::document::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -226,6 +227,8 @@ pub struct Authority {
     pub delay: f64,
     /// Elastic rate above which active damping acts (rad/s).
     pub threshold: f64,
+    /// Precision of the flight computer.
+    pub precision: Precision,
 }
 
 impl LawKind {

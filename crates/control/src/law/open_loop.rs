@@ -22,7 +22,8 @@ impl LawSpec for Open {
     }
 
     fn offers(&self) -> LawOffers {
-        LawOffers { is_open: true, ..LawOffers::new(None, EstimateNeeds::Nothing) }
+        let offers = LawOffers::new(None, EstimateNeeds::Nothing);
+        LawOffers { is_open: true, has_single_precision: true, ..offers }
     }
 }
 

@@ -5,6 +5,7 @@ use flexsc_dynamics::three_axis::{
     Bearing, FlexibleBody, FreeMode, SegmentLoads, SlipDirection, ThreeAxisMotion,
 };
 use flexsc_dynamics::wrench::Wrench;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::manoeuvre::{Slew, SlewProfile};
@@ -105,6 +106,7 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
         width: PulseWidth::default(),
         delay: 0.0,
         threshold: 0.0,
+        precision: Precision::Double,
     };
     let mut laws: [Box<dyn Law>; 3] = [0, 1, 2].map(|_| law.start(&authority));
     let distribution = TorqueDistribution::for_three_axes(craft.inertia);

@@ -272,6 +272,7 @@ mod tests {
     use super::*;
     use crate::actuator::PulseWidth;
     use crate::law::Command;
+    use flexsc_flight_precision::Precision;
 
     fn stages(text: &str) -> Stages {
         #[derive(serde::Deserialize)]
@@ -295,6 +296,7 @@ mod tests {
             width: PulseWidth::default(),
             delay: 0.0,
             threshold: 0.0,
+            precision: Precision::Double,
         };
         let mut law = laws.start(&authority);
         let estimate = StateEstimate { angle: 0.2, field_rate: -3e-7, ..StateEstimate::default() };

@@ -1,6 +1,7 @@
 //! Sequence of modes during a run: the supervisor of flight code, and the exact instants of conditions on the truth.
 
 use flexsc_flight::mode_supervisor::{ModeSupervisor, ModeTest, SupervisedExit};
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::time::{Instant, Span};
 
 use super::condition::{Expression, ModeReadings};
@@ -132,11 +133,11 @@ impl ModeSequence {
     }
 
     /// Tests the conditions that are due at `now`, in their order, and changes the mode if one is met.
-    pub fn test(&mut self, now: Instant, readings: &[f64]) -> Option<ModeChange> {
+    pub fn test(&mut self, now: Instant, readings: &[f64], precision: Precision) -> Option<ModeChange> {
         let ModeTables { modes, exits, steps, written, .. } = &mut self.tables;
         let from = self.supervisor.active;
         let ModeTest { has_changed, is_chattering, exit } =
-            self.supervisor.test(now.ticks(), readings, modes, exits, steps);
+            precision.test_modes(&mut self.supervisor, now.ticks(), readings, modes, exits, steps);
         (has_changed || is_chattering).then(|| ModeChange {
             from: Some(from),
             to: exits[exit].to,
@@ -192,7 +193,9 @@ mod tests {
             let value = Cell::new(rate(now.seconds()));
             let known = Known { rate: &value, now, entered: sequence.entered() };
             let readings = sequence.read(now, &known);
-            found.extend(sequence.test(now, &readings).map(|change| (now.seconds(), change.to)));
+            found.extend(
+                sequence.test(now, &readings, Precision::Double).map(|change| (now.seconds(), change.to)),
+            );
         }
         found
     }

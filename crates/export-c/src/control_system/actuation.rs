@@ -10,10 +10,10 @@ use flexsc_core::numerics::flight_types::to_vector3;
 use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::numerics::time::Span;
 use flexsc_flight::jet_pulses::{JetPair, JetTorques};
-use flexsc_flight::magnetorquers::{moment_of_torque, torque_of_moment};
 use flexsc_flight::momentum_unloading::MomentumUnloading;
 use flexsc_flight::vector3::Vector3;
-use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
+use flexsc_flight::wheel_allocation::AllocatedWheel;
+use flexsc_flight_precision::Precision;
 
 use super::attitude_unit::{vector, vector_words};
 use super::b_dot::moment_channel;
@@ -63,6 +63,7 @@ pub struct Actuation {
     pub unloading: Option<UnloadingUnit>,
     /// Torque that laws demand of the wheels (N m).
     demanded: Vector3,
+    precision: Precision,
 }
 
 /// Actuators that execute the commands of a law.
@@ -131,13 +132,14 @@ impl Actuation {
         let is_unloaded = unloads.is_none() || unloading.is_some();
         let wheels = wheels(scenario, &members, &executing).filter(|_| is_unloaded);
         let unloading = unloading.filter(|_| wheels.is_some());
-        Self { jets: jets(scenario, &members, &executing), wheels, unloading, demanded: Vector3::ZERO }
+        let (jets, precision) = (jets(scenario, &members, &executing), scenario.flight_precision);
+        Self { wheels, jets, unloading, demanded: Vector3::ZERO, precision }
     }
 
     /// Removes all but wheels that nothing unloads.
     pub(super) fn keep_wheels(&mut self) {
         let wheels = self.wheels.take().filter(|_| self.unloading.is_none());
-        *self = Self { wheels, ..Self::default() };
+        *self = Self { wheels, precision: self.precision, ..Self::default() };
     }
 
     /// Returns the outputs of a step.
@@ -156,8 +158,8 @@ impl Actuation {
     fn drive_wheels(&mut self) -> Vec<u64> {
         let counter = self.unloading.as_ref().map_or(Vector3::ZERO, |unit| unit.counter);
         let Some(own) = &mut self.wheels else { return Vec::new() };
-        allocate(&mut own.wheels, &counter.minus(&self.demanded), own.is_least_largest);
-        limit_torques(&mut own.wheels, own.limit);
+        let sum = self.precision.difference(&counter, &self.demanded);
+        self.precision.allocate(&mut own.wheels, &sum, own.is_least_largest, own.limit);
         own.wheels.iter().map(|wheel| wheel.torque.to_bits()).collect()
     }
 
@@ -195,7 +197,7 @@ impl Actuation {
         let mut words = WordReader::new(inputs);
         let given = words.list(stored.channel(1.0).map_or(0, |channel| channel.count));
         let rate = rate.unwrap_or_else(|| vector(&mut words));
-        let mut outputs = unit.begin(&stored.momentum(&given, &rate), &mut words, held);
+        let mut outputs = unit.begin(&stored.momentum(&given, &rate), &mut words, held, self.precision);
         outputs.extend(self.drive_wheels());
         outputs
     }
@@ -250,13 +252,20 @@ impl UnloadingUnit {
     }
 
     /// Begins a cycle, and returns the words of the moments or on-times.
-    fn begin(&mut self, stored: &Vector3, words: &mut WordReader<'_>, held: Option<Vector3>) -> Vec<u64> {
+    fn begin(
+        &mut self,
+        stored: &Vector3,
+        words: &mut WordReader<'_>,
+        held: Option<Vector3>,
+        precision: Precision,
+    ) -> Vec<u64> {
         match (&self.device, held) {
             (UnloadingDevice::Magnetorquers(_), Some(held)) => vector_words(&held).to_vec(),
             (UnloadingDevice::Magnetorquers(limits), None) => {
-                let (torque, field) = (self.law.torque(stored), vector(words));
-                let moment = moment_of_torque(&torque, &field, limits);
-                self.counter = torque_of_moment(&moment, &field);
+                let torque = precision.unloading_torque(&mut self.law, stored);
+                let field = vector(words);
+                let moment = precision.moment_of_torque(&torque, &field, limits);
+                self.counter = precision.torque_of_moment(&moment, &field);
                 vector_words(&moment).to_vec()
             }
             (UnloadingDevice::Jets(pairs, torques), _) => {

@@ -8,7 +8,7 @@ use flexsc_core::numerics::flight_types::{to_matrix3, to_matrix6x3};
 use flexsc_core::numerics::time::Span;
 use flexsc_core::record::AttitudeEstimate;
 use flexsc_flight::attitude_estimator::AttitudeEstimator;
-use flexsc_flight::attitude_filter::{AttitudeBiasFilter, GyroNoise};
+use flexsc_flight::attitude_filter::GyroNoise;
 use flexsc_flight::attitude_gate::AttitudeGate;
 use flexsc_flight::attitude_history::{AttitudeHistoryEntry, DelayedObservation, REFUSAL_COUNTERS};
 use flexsc_flight::attitude_observation::{AttitudeObservation, ObservationKind};
@@ -17,6 +17,7 @@ use flexsc_flight::quaternion::Quaternion;
 use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
+use flexsc_flight_precision::Precision;
 
 use super::{CallLayout, Channel, WordReader};
 
@@ -61,6 +62,7 @@ pub struct AttitudeUnit {
     pub gyro: (usize, Ticks),
     /// Sensors that correct the filter.
     pub correctors: Vec<Corrector>,
+    precision: Precision,
 }
 
 impl AttitudeUnit {
@@ -112,11 +114,11 @@ impl AttitudeUnit {
         observations: usize,
     ) -> Self {
         let mut entries = vec![AttitudeHistoryEntry::NONE; entries];
-        let filter =
-            AttitudeBiasFilter::new(Quaternion::IDENTITY, Vector3::ZERO, deviations[0], deviations[1]);
+        let precision = setup.precision;
+        let filter = precision.filter(Quaternion::IDENTITY, Vector3::ZERO, deviations);
         let (noise, reach, gate) = (setup.noise, setup.reach.ticks(), setup.gate);
         Self {
-            estimator: AttitudeEstimator::start(Ticks::default(), filter, noise, reach, gate, &mut entries),
+            estimator: precision.start_estimator(Ticks::default(), filter, noise, reach, gate, &mut entries),
             entries,
             observations: vec![DelayedObservation::NONE; observations],
             noise,
@@ -125,6 +127,7 @@ impl AttitudeUnit {
             deviations,
             gyro,
             correctors,
+            precision,
         }
     }
 
@@ -205,24 +208,24 @@ impl AttitudeUnit {
         let mut words = WordReader::new(inputs);
         let (attitude, bias) = (quaternion(&mut words), vector(&mut words));
         self.start_with(now, attitude, bias);
-        quaternion_words(&self.estimator.attitude(now, &self.entries)).to_vec()
+        quaternion_words(&self.attitude(now)).to_vec()
     }
 
     /// Starts the filter with an attitude and a bias (rad/s).
     fn start_with(&mut self, now: Ticks, attitude: Quaternion, bias: Vector3) {
-        let filter = AttitudeBiasFilter::new(attitude, bias, self.deviations[0], self.deviations[1]);
-        self.estimator =
-            AttitudeEstimator::start(now, filter, self.noise, self.reach, self.gate, &mut self.entries);
+        let Self { precision, noise, reach, gate, .. } = *self;
+        let filter = precision.filter(attitude, bias, self.deviations);
+        self.estimator = precision.start_estimator(now, filter, noise, reach, gate, &mut self.entries);
     }
 
     /// Takes a sample, and returns the words of the outputs.
     pub(super) fn sample(&mut self, now: Ticks, inputs: &[u64]) -> Vec<u64> {
         let mut words = WordReader::new(inputs);
         let (is_valid, rate) = (words.flag(), vector(&mut words));
-        let Self { estimator, entries, observations, .. } = self;
+        let Self { estimator, entries, observations, precision, .. } = self;
         let mut statuses = vec![ReadingStatus::None; 1 + self.correctors.len()];
         if is_valid {
-            statuses[0] = estimator.take_gyro(now, self.gyro.1, rate, entries, observations);
+            statuses[0] = precision.take_gyro(estimator, [now, self.gyro.1], rate, entries, observations);
         }
         for (sensor, (corrector, status)) in (1..).zip(self.correctors.iter().zip(&mut statuses[1..])) {
             let is_valid = words.flag();
@@ -234,22 +237,54 @@ impl AttitudeUnit {
                 observation.inertial = vector(&mut words);
             }
             if is_valid {
-                let latency = corrector.latency;
+                let times = [now, corrector.latency];
                 *status =
-                    estimator.take_observation(sensor, now, latency, &observation, entries, observations);
+                    precision.take_observation(estimator, sensor, times, &observation, entries, observations);
             }
         }
-        let (attitude, rate) = (estimator.attitude(now, entries), estimator.rate(entries));
+        let (attitude, rate) = (self.attitude(now), self.rate());
+        let Self { estimator, entries, precision, .. } = &*self;
         let mut outputs = quaternion_words(&attitude).to_vec();
         outputs.extend(vector_words(&rate));
         outputs.extend(statuses.into_iter().map(|status| status as u64));
         let history = &estimator.history;
-        outputs.extend([history.refusals(), history.refused[0], estimator.age(now).to_bits()]);
+        outputs.extend([history.refusals(), history.refused[0], self.age(now).to_bits()]);
         outputs.extend(vector_words(&estimator.correction.innovation));
-        outputs.push((estimator.correction.nis / AttitudeEstimate::MEASUREMENTS).to_bits());
-        outputs.extend(vector_words(&estimator.deviation(entries)));
+        let nis = estimator.correction.nis / AttitudeEstimate::MEASUREMENTS;
+        outputs.push(precision.rounded(nis).to_bits());
+        outputs.extend(vector_words(&precision.deviation(estimator, entries)));
         outputs.extend((1..).zip(&self.correctors).map(|(sensor, _)| history.refused[counter(sensor)]));
         outputs
+    }
+
+    /// Returns the attitude.
+    pub(super) fn attitude(&self, now: Ticks) -> Quaternion {
+        self.precision.attitude(&self.estimator, now, &self.entries)
+    }
+
+    /// Returns the rate (rad/s).
+    pub(super) fn rate(&self) -> Vector3 {
+        self.precision.rate(&self.estimator, &self.entries)
+    }
+
+    /// Returns the rotation vector (rad) from a target attitude.
+    pub(super) fn angle_from(&self, target: &Quaternion, now: Ticks) -> Vector3 {
+        self.precision.rotation(target, &self.attitude(now))
+    }
+
+    /// Returns the time since the last correction (s).
+    pub(super) fn age(&self, now: Ticks) -> f64 {
+        self.precision.seconds(now.since(self.estimator.history.corrected))
+    }
+
+    /// Returns the size of the last innovation (rad).
+    pub(super) fn innovation_size(&self) -> f64 {
+        self.precision.innovation_size(&self.estimator.correction.innovation)
+    }
+
+    /// Returns the standard deviation of the attitude about all axes together (rad).
+    pub(super) fn deviation_size(&self) -> f64 {
+        self.precision.deviation_size(&self.entries[self.estimator.history.latest()].filter)
     }
 }
 

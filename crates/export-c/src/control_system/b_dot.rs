@@ -4,9 +4,10 @@ use flexsc_core::Scenario;
 use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::control::law::LawKind;
 use flexsc_core::numerics::time::Span;
-use flexsc_flight::b_dot::{FieldRate, limited_moment, opposing_moment};
+use flexsc_flight::b_dot::{FieldRate, limited_moment};
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
+use flexsc_flight_precision::Precision;
 
 use super::attitude_unit::{vector, vector_words};
 use super::{CallLayout, Channel, NotExportable, WordReader, all_of_kind};
@@ -18,6 +19,7 @@ pub struct FieldUnit {
     pub sensor: usize,
     /// Rate of change.
     pub field: FieldRate,
+    precision: Precision,
 }
 
 impl FieldUnit {
@@ -26,7 +28,7 @@ impl FieldUnit {
         let missing = || NotExportable::new("law.b_dot", "needs a `[sensor.magnetometer]`");
         let (sensor, most_age) =
             scenario.sensor.field_source(scenario.study.law_period).ok_or_else(missing)?;
-        Ok(Self { sensor, field: FieldRate::new(most_age) })
+        Ok(Self { sensor, field: FieldRate::new(most_age), precision: scenario.flight_precision })
     }
 
     /// Returns the function: a sample of the field.
@@ -43,7 +45,7 @@ impl FieldUnit {
 
     /// Takes a sample, and returns the words of the outputs.
     pub(super) fn take(&mut self, now: Ticks, inputs: &[u64]) -> Vec<u64> {
-        self.field.take(now, &vector(&mut WordReader::new(inputs)));
+        self.precision.take_field(&mut self.field, now, &vector(&mut WordReader::new(inputs)));
         vector_words(&self.field.rate).to_vec()
     }
 }
@@ -57,6 +59,7 @@ pub struct BDotLaws {
     pub gains: [f64; 3],
     /// Largest moment along each axis (A m²).
     pub limits: [f64; 3],
+    precision: Precision,
 }
 
 impl BDotLaws {
@@ -75,8 +78,17 @@ impl BDotLaws {
         Ok(Self {
             period: Span::seconds(roll.period),
             gains: each.map(|law| law.gain.get()),
-            limits: [0, 1, 2].map(|axis| torquers.map_or(f64::INFINITY, |of| of.moment.about(axis).get())),
+            limits: [0, 1, 2].map(|axis| {
+                let limit = torquers.map_or(f64::INFINITY, |of| of.moment.about(axis).get());
+                scenario.flight_precision.rounded(limit)
+            }),
+            precision: scenario.flight_precision,
         })
+    }
+
+    /// Returns the precision in which the laws compute.
+    pub(super) fn precision(&self) -> Precision {
+        self.precision
     }
 
     /// Returns the function: a step of the laws.
@@ -90,8 +102,10 @@ impl BDotLaws {
     /// Returns the moments (A m²) for a rate of change of the field (T/s).
     pub fn moment(&self, rate: &Vector3) -> Vector3 {
         let rates = [rate.x, rate.y, rate.z];
-        let [x, y, z] = [0, 1, 2]
-            .map(|axis| limited_moment(opposing_moment(self.gains[axis], rates[axis]), self.limits[axis]));
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let moment = self.precision.opposing_moment(self.gains[axis], rates[axis]);
+            limited_moment(moment, self.limits[axis])
+        });
         Vector3 { x, y, z }
     }
 }

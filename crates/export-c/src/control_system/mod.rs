@@ -19,6 +19,7 @@ use std::fmt;
 use flexsc_core::Scenario;
 use flexsc_core::control::law::LawKind;
 use flexsc_flight::ticks::Ticks;
+use flexsc_flight_precision::Precision;
 
 pub use actuation::{Actuation, UnloadingDevice};
 pub use attitude_unit::{AttitudeUnit, Corrector, counter};
@@ -136,6 +137,16 @@ impl ControlSystem {
             Self::Relays(_) | Self::BDot(_) => None,
             Self::Sampled(laws) => laws.estimator.as_ref(),
             Self::Modes(modes) => modes.estimator.as_ref(),
+        }
+    }
+
+    /// Returns the precision in which it computes.
+    pub fn precision(&self) -> Precision {
+        match self {
+            Self::Relays(_) => Precision::Double,
+            Self::Sampled(laws) => laws.precision(),
+            Self::BDot(system) => system.laws.precision(),
+            Self::Modes(modes) => modes.precision(),
         }
     }
 

@@ -5,10 +5,11 @@ use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::control::operation::{ModeFormula, ModeQuantity, ModeReading, ModeTables};
 use flexsc_core::control::sensor::SensorKind;
 use flexsc_flight::mode_condition::ConditionSource;
-use flexsc_flight::mode_readings::{distance, largest_size, norm};
+use flexsc_flight::mode_readings::largest_size;
 use flexsc_flight::quaternion::Quaternion;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
+use flexsc_flight_precision::Precision;
 
 use super::attitude_unit::{AttitudeUnit, quaternion};
 use super::{Channel, StoredMomentum, WordReader};
@@ -35,6 +36,7 @@ pub struct ModeInputs {
     pub formulas: Vec<ReadingFormula>,
     /// Number of axes.
     pub axes: usize,
+    precision: Precision,
 }
 
 impl ModeInputs {
@@ -45,7 +47,8 @@ impl ModeInputs {
         stored: &StoredMomentum,
         has_filter: bool,
     ) -> Self {
-        let mut inputs = Self { channels: Vec::new(), formulas: Vec::new(), axes: scenario.study.axes.len() };
+        let (axes, precision) = (scenario.study.axes.len(), scenario.flight_precision);
+        let mut inputs = Self { channels: Vec::new(), formulas: Vec::new(), axes, precision };
         if has_filter {
             let about = "Target attitude of the present mode: quaternion w, x, y, z";
             inputs.add(Channel::from_quantity(FlightQuantity::TargetAttitude, 4, 1.0).with_about(about));
@@ -216,12 +219,11 @@ impl ModeInputs {
         };
         let estimate = |quantity: FlightQuantity| match (filter, quantity) {
             (Some(unit), FlightQuantity::Rate) => {
-                let rate = unit.estimator.rate(&unit.entries);
+                let rate = unit.rate();
                 vec![rate.x, rate.y, rate.z]
             }
             (Some(unit), FlightQuantity::Angle) => {
-                let attitude = unit.estimator.attitude(now, &unit.entries);
-                let angle = Self::target(inputs).rotation_to(&attitude);
+                let angle = unit.angle_from(&Self::target(inputs), now);
                 vec![angle.x, angle.y, angle.z]
             }
             _ => given(quantity.channel()),
@@ -241,13 +243,13 @@ impl ModeInputs {
             }
             ReadingFormula::Input(name) => given(name).first().copied().unwrap_or(f64::NAN),
             ReadingFormula::OfFilter(quantity) => filter.map_or(f64::NAN, |unit| match quantity {
-                ModeQuantity::FilterAge => unit.estimator.age(now),
-                ModeQuantity::FilterInnovation => unit.estimator.innovation_size(),
-                _ => unit.estimator.deviation_size(&unit.entries),
+                ModeQuantity::FilterAge => unit.age(now),
+                ModeQuantity::FilterInnovation => unit.innovation_size(),
+                _ => unit.deviation_size(),
             }),
-            ReadingFormula::Known(ModeFormula::Norm(vector)) => norm(&array(*vector)),
+            ReadingFormula::Known(ModeFormula::Norm(vector)) => self.precision.norm(&array(*vector)),
             ReadingFormula::Known(ModeFormula::Distance(one, other)) => {
-                distance(&array(*one), &array(*other))
+                self.precision.distance(&array(*one), &array(*other))
             }
             ReadingFormula::Known(ModeFormula::LargestSize(list)) => largest_size(&array(*list)),
             ReadingFormula::Known(ModeFormula::Single) => f64::NAN,

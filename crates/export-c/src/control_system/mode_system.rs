@@ -11,6 +11,7 @@ use flexsc_flight::mode_supervisor::{ModeSupervisor, ModeTest};
 use flexsc_flight::quaternion::Quaternion;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
+use flexsc_flight_precision::Precision;
 
 use super::actuation::{Actuation, Executing, are_jets, are_magnetorquers, are_wheels};
 use super::attitude_unit::{AttitudeUnit, quaternion, vector, vector_words};
@@ -140,6 +141,7 @@ pub struct ModeSystem {
     moved: Option<(Vector3, Quaternion)>,
     /// Inputs and outputs of a step.
     layout: Arc<StepLayout>,
+    precision: Precision,
 }
 
 impl ModeSystem {
@@ -194,6 +196,7 @@ impl ModeSystem {
             moves_angles,
             moved: None,
             layout,
+            precision: scenario.flight_precision,
         })
     }
 
@@ -203,6 +206,11 @@ impl ModeSystem {
         if let Some(unit) = &mut self.estimator {
             unit.start_at_identity(now);
         }
+    }
+
+    /// Returns the precision in which the laws compute.
+    pub(super) fn precision(&self) -> Precision {
+        self.precision
     }
 
     /// Returns the shortest period of the laws (s).
@@ -295,7 +303,7 @@ impl ModeSystem {
         let is_detumbling =
             self.modes.get(self.supervisor.active).is_some_and(|mode| mode.start.b_dot().is_some());
         let held = is_detumbling.then_some(self.moment);
-        let rate = self.estimator.as_ref().map(|unit| unit.estimator.rate(&unit.entries));
+        let rate = self.estimator.as_ref().map(AttitudeUnit::rate);
         let outputs = self.actuation.unload(inputs, &self.stored, rate, held);
         if self.actuation.unloads_by_magnetorquers() && held.is_none() {
             self.moment = vector(&mut WordReader::new(&outputs));
@@ -325,12 +333,12 @@ impl ModeSystem {
         let readings = self.inputs.readings(now, inputs, &self.stored, self.estimator.as_ref());
         let ModeTables { modes, exits, steps, .. } = &mut self.tables;
         let ModeTest { has_changed, is_chattering, .. } =
-            self.supervisor.test(now, &readings, modes, exits, steps);
+            self.precision.test_modes(&mut self.supervisor, now, &readings, modes, exits, steps);
         if has_changed {
             self.start_laws();
             if let Some(unit) = self.estimator.as_ref().filter(|_| self.moves_angles) {
                 let target = ModeInputs::target(inputs);
-                let angle = target.rotation_to(&unit.estimator.attitude(now, &unit.entries));
+                let angle = unit.angle_from(&target, now);
                 self.moved = Some((angle, target));
             }
         }
@@ -356,12 +364,12 @@ impl ModeSystem {
         let mut motion = None;
         if let Some(unit) = &self.estimator {
             let target = quaternion(&mut WordReader::new(inputs));
-            let mut angle = target.rotation_to(&unit.estimator.attitude(now, &unit.entries));
+            let mut angle = unit.angle_from(&target, now);
             // At a change the engine moves the angles from one target to the other.
             if let Some((before, from)) = self.moved.take() {
-                angle = before.plus(&target.rotation_to(&from));
+                angle = self.precision.sum(&before, &self.precision.rotation(&target, &from));
             }
-            let rate = unit.estimator.rate(&unit.entries);
+            let rate = unit.rate();
             let words = |values: [f64; 3]| values.map(f64::to_bits);
             motion = Some([words([angle.x, angle.y, angle.z]), words([rate.x, rate.y, rate.z])]);
         }

@@ -6,13 +6,13 @@ use flexsc_core::control::law::LawKind;
 use flexsc_core::numerics::flight_types::to_matrix3;
 use flexsc_core::numerics::time::Span;
 use flexsc_flight::active_damping::ElasticRateEstimate;
-use flexsc_flight::axis_motion::{AxisMotion, AxisReference, total_angle};
+use flexsc_flight::axis_motion::{AxisMotion, AxisReference};
 use flexsc_flight::compensator::CompensatorQuantity;
 use flexsc_flight::matrix3::Matrix3;
 use flexsc_flight::phase_plane::PhasePlaneLaw;
 use flexsc_flight::ticks::Ticks;
-use flexsc_flight::torque_distribution;
 use flexsc_flight::vector3::Vector3;
+use flexsc_flight_precision::Precision;
 
 use super::actuation::Actuation;
 use super::attitude_unit::{AttitudeUnit, quaternion};
@@ -40,6 +40,7 @@ pub struct SampledLaws {
     pub filter: Option<KalmanUnit>,
     /// Filters of the rigid rates that the laws read.
     pub rate_filter: Option<RateUnit>,
+    precision: Precision,
 }
 
 impl SampledLaws {
@@ -59,8 +60,18 @@ impl SampledLaws {
         let estimator = AttitudeUnit::new(scenario).filter(|_| laws.len() == 3);
         let (actuation, rate_filter) = (Actuation::new(scenario), RateUnit::new(scenario, laws.len()));
         let (period, stored) = (cycle.seconds(), StoredMomentum::new(scenario));
-        let mut laws =
-            Self { period, laws: of_axes, inertia, stored, actuation, estimator, filter: None, rate_filter };
+        let precision = scenario.flight_precision;
+        let mut laws = Self {
+            period,
+            laws: of_axes,
+            inertia,
+            stored,
+            actuation,
+            estimator,
+            filter: None,
+            rate_filter,
+            precision,
+        };
         laws.filter = KalmanUnit::new(scenario, laws.reads_mode());
         Ok(laws)
     }
@@ -74,6 +85,11 @@ impl SampledLaws {
     /// Removes the actuators, which serve the laws of all modes.
     pub(super) fn only_command(&mut self) {
         self.actuation = Actuation::default();
+    }
+
+    /// Returns the precision in which the laws compute.
+    pub(super) fn precision(&self) -> Precision {
+        self.precision
     }
 
     /// Returns the number of axes.
@@ -145,7 +161,7 @@ impl SampledLaws {
     pub(super) fn call(&mut self, call: usize, now: Ticks, inputs: &[u64]) -> Vec<u64> {
         let (estimators, step) = (self.estimator_calls(), self.step_index());
         if (estimators..step).contains(&call) {
-            let rate = self.estimator.as_ref().map(|unit| unit.estimator.rate(&unit.entries));
+            let rate = self.estimator.as_ref().map(AttitudeUnit::rate);
             return self.actuation.unload(inputs, &self.stored, rate, None);
         }
         if let Some(filter) = self.filter.as_mut().filter(|_| call < step) {
@@ -223,8 +239,7 @@ impl SampledLaws {
         };
         if let Some(unit) = &self.estimator {
             let target = quaternion(words);
-            let angle = target.rotation_to(&unit.estimator.attitude(now, &unit.entries));
-            let rate = unit.estimator.rate(&unit.entries);
+            let (angle, rate) = (unit.angle_from(&target, now), unit.rate());
             set(vec![angle.x, angle.y, angle.z], &mut motions, |motion| &mut motion.angle);
             set(vec![rate.x, rate.y, rate.z], &mut motions, |motion| &mut motion.rate);
         } else if let Some(unit) = &self.filter {
@@ -246,7 +261,7 @@ impl SampledLaws {
             set(rates, &mut motions, |motion| &mut motion.rate);
         }
         if let [roll, pitch, yaw] = &motions[..] {
-            let total = total_angle(roll.angle, pitch.angle, yaw.angle);
+            let total = self.precision.total_angle([roll.angle, pitch.angle, yaw.angle]);
             for motion in &mut motions {
                 motion.total_angle = total;
             }
@@ -303,8 +318,11 @@ impl SampledLaws {
             }
             LawsOfAxes::Attitude(laws) => {
                 let laws = laws.iter_mut().zip(&motions).zip(&references);
-                laws.map(|(((law, filters), motion), reference)| law.step(motion, reference, filters))
-                    .collect()
+                let precision = self.precision;
+                let each = laws.map(|(((law, filters), motion), reference)| {
+                    precision.feedback(law, motion, reference, filters)
+                });
+                each.collect()
             }
             LawsOfAxes::StateSpace(laws) => compensator_commands(laws, &motions, &references, &speeds),
         };
@@ -317,7 +335,7 @@ impl SampledLaws {
             };
             let (acceleration, rate) = (vector(&|axis| torque[axis]), vector(&|axis| motions[axis].rate));
             let stored = self.stored.momentum(if given.is_empty() { &speeds } else { &given }, &rate);
-            let of_axes = torque_distribution::torque(&self.inertia, &acceleration, &rate, &stored);
+            let of_axes = self.precision.torque(&self.inertia, &acceleration, &rate, &stored);
             torque = [of_axes.x, of_axes.y, of_axes.z][..axes].to_vec();
             outputs.extend_from_slice(&torque);
         }

@@ -3,7 +3,7 @@
 use flexsc_core::Scenario;
 use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_flight::vector3::Vector3;
-use flexsc_flight::wheel_momentum;
+use flexsc_flight_precision::Precision;
 
 use super::Channel;
 use super::actuation::wheel_inertia;
@@ -19,6 +19,8 @@ pub enum StoredMomentum {
         axes: Vec<Vector3>,
         /// Moment of inertia of each wheel about its axis (kg m²).
         inertia: f64,
+        /// Precision in which the momentum is computed.
+        precision: Precision,
     },
     /// Input: the momentum of control moment gyros, whose steering is not part of the code.
     Input,
@@ -34,7 +36,11 @@ impl StoredMomentum {
         }
         let inertia = executing.find_map(wheel_inertia);
         match scenario.study.wheels.as_ref().zip(inertia) {
-            Some((wheels, inertia)) => Self::Wheels { axes: wheels.flight_axes().to_vec(), inertia },
+            Some((wheels, inertia)) => Self::Wheels {
+                axes: wheels.flight_axes().to_vec(),
+                inertia,
+                precision: scenario.flight_precision,
+            },
             None => Self::None,
         }
     }
@@ -58,8 +64,8 @@ impl StoredMomentum {
     /// Returns the momentum (N m s) for these numbers of its input, and the estimated rate (rad/s).
     pub(super) fn momentum(&self, given: &[f64], rate: &Vector3) -> Vector3 {
         match (self, given) {
-            (Self::Wheels { axes, inertia }, _) if given.len() >= axes.len() => {
-                wheel_momentum::stored(axes, *inertia, given, rate)
+            (Self::Wheels { axes, inertia, precision }, _) if given.len() >= axes.len() => {
+                precision.stored_momentum(axes, *inertia, given, rate)
             }
             (Self::Input, [x, y, z]) => Vector3 { x: *x, y: *y, z: *z },
             _ => Vector3::ZERO,

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::Plan;
 use super::signature::{has_time, inits_at_time};
 use crate::control_system::{CallLayout, Channel, NumberKind};
-use crate::self_test::{BLOCK, EXTREME_BLOCK, EXTREMES, SEED, cycle_milliseconds};
+use crate::self_test::{BLOCK, EXTREME_BLOCK, SEED, cycle_milliseconds, extremes};
 
 /// Returns the driver, which is compiled under the guards of the source too: it computes inputs.
 pub fn driver(plan: &Plan<'_>, guards: &str) -> String {
@@ -30,7 +30,8 @@ pub fn driver(plan: &Plan<'_>, guards: &str) -> String {
     table(plan, "input", |call| &call.inputs, &mut text);
     table(plan, "output", |call| &call.outputs, &mut text);
     call(plan, &mut text);
-    let extremes: Vec<String> = EXTREMES.iter().map(|word| format!("UINT64_C(0x{word:016x})")).collect();
+    let extremes: Vec<String> =
+        extremes(plan.precision).iter().map(|word| format!("UINT64_C(0x{word:016x})")).collect();
     let _ = writeln!(
         text,
         "enum {{ BLOCK = {BLOCK}, EXTREME_BLOCK = {EXTREME_BLOCK}, MILLISECONDS = {} }};\n\nstatic const uint64_t extremes[{}] = {{\n    {}\n}};\n\n\
@@ -126,7 +127,8 @@ fn call(plan: &Plan<'_>, text: &mut String) {
             for element in 0..channel.count {
                 let member = member(channel, element);
                 let value = match channel.kind {
-                    NumberKind::Real => format!("real(in[{word}])"),
+                    NumberKind::Real if plan.precision.is_double() => format!("real(in[{word}])"),
+                    NumberKind::Real => format!("(float)real(in[{word}])"),
                     NumberKind::Flag => format!("in[{word}] != 0"),
                     NumberKind::Integer(_) => format!("(int64_t)in[{word}]"),
                 };
@@ -170,6 +172,7 @@ const COUNTING: &str = "#ifdef DRIVER_COUNT
 #else
 #define count_begin() ((void)0)
 #define count_end(function) ((void)0)
+#define count_inputs(from) ((void)0)
 #endif
 
 ";
@@ -261,6 +264,7 @@ static uint64_t self_test(uint64_t cycles)
     for (uint64_t cycle = 0; cycle < cycles; ++cycle) {
         const bool is_extreme = cycle / BLOCK % EXTREME_BLOCK == EXTREME_BLOCK - 1;
         const uint64_t time = cycle * MILLISECONDS;
+        count_inputs(is_extreme ? COUNT_EXTREME : COUNT_RANDOM);
         const uint64_t now[2] = { time / 1000, time % 1000 * UINT64_C(1000000000000) };
         if (cycle % BLOCK == 0) {
             INIT(&state, now);
@@ -344,6 +348,7 @@ static int replay(const char *path)
     const uint64_t count = head[1];
     const uint64_t start[2] = { 0, 0 };
     INIT(&state, start);
+    count_inputs(COUNT_RUN);
     for (uint64_t number = 0; number < count; ++number) {
         if (!read_words(file, head, 3) || head[0] >= CALLS || !read_words(file, in, input_counts[head[0]])
             || !read_words(file, expected, output_counts[head[0]])) {

@@ -14,10 +14,11 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
     let guard = format!("{}_H", prefix.to_uppercase());
     let mut text = format!(
         "/* Control system of {}, exported by flexsc {}.\n *\n * The code is translated from the Rust code that flexsc calls in a \
-         run, and returns the same bits\n * if it is compiled as the Makefile does: IEEE 754 doubles, no contraction, no fast-math. \
+         run, and returns the same bits\n * if it is compiled as the Makefile does: IEEE 754 {}, no contraction, no fast-math. \
          Units are SI.\n{}\n *\n{}\n */\n#ifndef {guard}\n#define {guard}\n\n",
         plan.origin.file,
         env!("CARGO_PKG_VERSION"),
+        plan.numbers(),
         excluded_parts(plan),
         trace(plan)
     );

@@ -2,6 +2,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::numerics::time::Span;
+use flexsc_flight_precision::Precision;
 use serde_json::{Value, json};
 
 use super::{Plan, main_loop, start_values};
@@ -50,7 +51,9 @@ pub fn interface(plan: &Plan<'_>, scenario: &Scenario) -> String {
 
 /// Returns a function with its channels.
 fn function(plan: &Plan<'_>, call: &CallLayout) -> Value {
-    let list = |channels: &[Channel]| channels.iter().map(channel).collect::<Vec<Value>>();
+    let list = |channels: &[Channel]| {
+        channels.iter().map(|own| channel(own, plan.precision)).collect::<Vec<Value>>()
+    };
     json!({
         "function": format!("{}_{}", plan.prefix, call.name),
         "about": call.about,
@@ -62,13 +65,12 @@ fn function(plan: &Plan<'_>, call: &CallLayout) -> Value {
     })
 }
 
-fn channel(channel: &Channel) -> Value {
+fn channel(channel: &Channel, precision: Precision) -> Value {
+    let real = if precision.is_double() { "double" } else { "float" };
     let (kind, range) = match channel.kind {
-        NumberKind::Real if channel.is_unit => ("double", Value::from("norm within 0.001 of 1")),
-        NumberKind::Real if channel.largest.is_finite() => {
-            ("double", json!([-channel.largest, channel.largest]))
-        }
-        NumberKind::Real => ("double", Value::from("finite")),
+        NumberKind::Real if channel.is_unit => (real, Value::from("norm within 0.001 of 1")),
+        NumberKind::Real if channel.largest.is_finite() => (real, json!([-channel.largest, channel.largest])),
+        NumberKind::Real => (real, Value::from("finite")),
         NumberKind::Flag => ("bool", Value::Null),
         NumberKind::Integer(0) => ("int64_t", Value::Null),
         NumberKind::Integer(below) => ("int64_t", json!([0, below - 1])),

@@ -1,8 +1,10 @@
 //! Files of an exported control system: header, source, driver, start-up code of boards, Makefile, vectors and a description.
 
+mod accuracy;
 mod actuation_calls;
 mod b_dot_calls;
 mod calls;
+mod choices;
 mod compensator_calls;
 mod driver;
 mod estimator_calls;
@@ -22,14 +24,16 @@ mod start_values;
 mod static_files;
 
 use flexsc_core::Scenario;
+use flexsc_flight_precision::Precision;
 use sha2::{Digest, Sha256};
 
 use crate::control_system::{CallLayout, ControlSystem, ExcludedPart};
-use crate::flight_sources::flight_sources;
+use crate::flight_sources::sources_in;
 use crate::self_test::self_tests;
-use crate::translate::{TranslationError, translate};
+use crate::translate::{TranslationError, in_single, translate_pruned};
 use crate::vectors::{self, CallVector, VectorError};
 
+pub use accuracy::OutputAccuracy;
 pub use guests::Guest;
 
 /// Numbers of cycles for which the hash of the self-test is exported.
@@ -55,6 +59,8 @@ pub struct Package {
     pub vectors: usize,
     /// Parts of the control loop that are not in the code.
     pub excluded_parts: Vec<ExcludedPart>,
+    /// Outputs in single precision beside those in double precision; none in double precision.
+    pub accuracy: Vec<OutputAccuracy>,
 }
 
 /// Reason for which a control system is not exported.
@@ -104,12 +110,18 @@ struct Plan<'a> {
     run_start: Option<&'a [u64]>,
     /// Name of the mode whose laws are written; `None` of the whole control system.
     mode: Option<&'a str>,
+    precision: Precision,
 }
 
 impl Plan<'_> {
     /// Returns the version of the control system: the program, and the digits of the scenario's hash.
     fn version(&self) -> String {
         format!("flexsc {}, scenario {}", env!("CARGO_PKG_VERSION"), self.digest)
+    }
+
+    /// Returns the name of the numbers in which the code computes.
+    fn numbers(&self) -> &'static str {
+        if self.precision.is_double() { "doubles" } else { "floats" }
     }
 
     /// Returns the name in C of a type of the flight code.
@@ -148,16 +160,24 @@ pub fn export(
         parameters: &tuned,
         run_start: start_values::find(&calls, &vectors),
         mode: None,
+        precision: scenario.flight_precision,
     };
+    let in_precision =
+        |text: String| if scenario.flight_precision.is_double() { text } else { in_single(&text) };
     let (functions, state) = match &system {
         ControlSystem::Modes(own) => (modes::functions(&plan, own), modes::state(&plan, own)),
         _ => (calls::functions(&plan), header::state(&plan)),
     };
-    let translation = translate(&flight_sources(), &source::roots(&system, &functions), prefix)
-        .map_err(ExportError::Translation)?;
+    let functions = in_precision(functions);
+    let sources = sources_in(scenario.flight_precision);
+    let roots = source::roots(&system, &functions);
+    let choices = choices::constant_choices(&system);
+    let translation =
+        translate_pruned(&sources, &roots, prefix, &choices).map_err(ExportError::Translation)?;
+    let accuracy = accuracy::of_single(scenario, &vectors);
     let hashes: Vec<(u64, u64)> = HASHED_CYCLES.into_iter().zip(self_tests(&system, HASHED_CYCLES)).collect();
-    let (header, source) =
-        (header::header(&plan, &translation, &state), source::source(&plan, &translation, &functions));
+    let header = in_precision(header::header(&plan, &translation, &state));
+    let source = in_precision(source::source(&plan, &translation, &functions));
     let mut files: Vec<PackageFile> =
         guests.iter().flat_map(|guest| guest.files(&plan, &header, &source)).collect();
     files.extend([
@@ -166,17 +186,19 @@ pub fn export(
         text("driver.c".to_owned(), driver::driver(&plan, &translation.guards)),
         text(format!("{prefix}.icd.json"), interface::interface(&plan, scenario)),
         text("scenario.toml".to_owned(), effective),
-        text("main_loop.c".to_owned(), main_loop::main_loop(&plan)),
+        text("main_loop.c".to_owned(), in_precision(main_loop::main_loop(&plan))),
         text("Makefile".to_owned(), static_files::makefile(prefix, &hashes)),
-        text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len())),
+        text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len(), &accuracy)),
         PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(&vectors) },
     ]);
-    files.extend(parameters::source(&plan).map(|source| text(format!("{prefix}_parameters.c"), source)));
+    files.extend(
+        parameters::source(&plan).map(|source| text(format!("{prefix}_parameters.c"), in_precision(source))),
+    );
     files
         .extend(static_files::board_files().map(|(path, content)| text(path.to_owned(), content.to_owned())));
     files.sort_by(|a, b| a.path.cmp(&b.path));
     let vectors = vectors.len();
-    Ok(Package { files, calls, vectors, excluded_parts })
+    Ok(Package { files, calls, vectors, excluded_parts, accuracy })
 }
 
 fn text(path: String, content: String) -> PackageFile {

@@ -35,7 +35,7 @@ pub fn declaration(plan: &Plan<'_>, stored: &StoredMomentum, rate: &str, text: &
     let vector = plan.type_name("Vector3");
     let value = match stored {
         StoredMomentum::None => format!("({vector}){{ .x = 0.0, .y = 0.0, .z = 0.0 }}"),
-        StoredMomentum::Wheels { axes, inertia } => format!(
+        StoredMomentum::Wheels { axes, inertia, .. } => format!(
             "{FUNCTION}(wheel_axes, {0}, {1}, input->wheel_speed, {0}, &{rate})",
             axes.len(),
             initialiser(inertia, plan.prefix)

@@ -43,8 +43,12 @@ const READINGS: [(&str, &str); 5] = [
 /// Returns the paths of the functions of the flight code that the exported `functions` call.
 pub fn roots(system: &ControlSystem, functions: &str) -> Vec<&'static str> {
     let mut roots = Vec::new();
-    if functions.contains("binary64_infinity") {
-        roots.push("binary64::infinity");
+    for (name, path) in
+        [("binary64_infinity", "binary64::infinity"), ("binary32_infinity", "binary32::infinity")]
+    {
+        if functions.contains(name) {
+            roots.push(path);
+        }
     }
     roots.extend(momentum_calls::root(functions));
     match system {

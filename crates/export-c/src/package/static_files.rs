@@ -3,14 +3,16 @@
 use std::fmt::Write as _;
 
 use super::Plan;
+use super::accuracy::{OutputAccuracy, table};
 
 /// Files with which the driver runs on a Cortex-M board.
-pub fn board_files() -> [(&'static str, &'static str); 5] {
+pub fn board_files() -> [(&'static str, &'static str); 6] {
     [
         ("boards/double_sum.c", include_str!("files/double_sum.c")),
         ("boards/instructions.c", include_str!("files/instructions.c")),
         ("boards/instructions.h", include_str!("files/instructions.h")),
         ("boards/mps2.ld", include_str!("files/mps2.ld")),
+        ("boards/stack.awk", include_str!("files/stack.awk")),
         ("boards/start.c", include_str!("files/start.c")),
     ]
 }
@@ -26,7 +28,7 @@ pub fn makefile(prefix: &str, hashes: &[(u64, u64)]) -> String {
 }
 
 /// Returns the description of the directory.
-pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize) -> String {
+pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize, accuracy: &[OutputAccuracy]) -> String {
     let prefix = plan.prefix;
     let mut text = format!(
         "# Control system of {}\n\nExported by flexsc {}. `{prefix}.h` and `{prefix}.c` are the control system: C99, no heap, no library but \
@@ -71,9 +73,12 @@ pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize) -> String 
     for (cycles, hash) in hashes {
         let _ = writeln!(text, "| {cycles} | {hash:016x} |");
     }
-    text.push_str(
-        "\nEqual bits need IEEE 754 doubles, round to nearest, subnormal numbers, no fused multiply-add (`-ffp-contract=off`) and no \
+    text.push_str(&table(accuracy, vectors));
+    let _ = write!(
+        text,
+        "\nEqual bits need IEEE 754 {}, round to nearest, subnormal numbers, no fused multiply-add (`-ffp-contract=off`) and no \
          fast-math. An output must not be compared by bits if it is NaN.\n",
+        plan.numbers()
     );
     text
 }

@@ -39,8 +39,8 @@ impl FunctionBody<'_> {
             return refuse(call.span(), format!("the function `{name}`"), ACCEPTED_CALLS);
         };
         let (to, from): (ValueKind, &[&str]) = match name.as_str() {
-            "f64::from_bits" => {
-                let bits = self.expression(argument, Some(&ValueKind::Integer(IntegerKind::U64)))?;
+            "f64::from_bits" | "f32::from_bits" => {
+                let bits = self.expression(argument, Some(&self.program.bits_kind()))?;
                 return Ok(self.helper(CHelper::FromBits, &[&bits.text], ValueKind::F64));
             }
             "f64::from" => (ValueKind::F64, &["i32", "u32"]),

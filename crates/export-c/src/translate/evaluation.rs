@@ -257,7 +257,9 @@ impl Program<'_> {
 pub(super) fn outside_constant(words: &[String]) -> Option<ConstantValue> {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     match words.as_slice() {
-        ["core" | "std", "f64", "consts", name] => mathematical_constant(name).map(ConstantValue::Float),
+        ["core" | "std", "f64" | "f32", "consts", name] => {
+            mathematical_constant(name).map(ConstantValue::Float)
+        }
         ["f64", name] => float_constant(name).map(ConstantValue::Float),
         [kind, "MAX"] => IntegerKind::from_name(kind)
             .filter(|kind| *kind != IntegerKind::Usize)
@@ -284,10 +286,12 @@ fn literal_kind(suffix: &str, expected: Option<&ValueKind>) -> IntegerKind {
 fn literal_value(literal: &ExprLit, expected: Option<&ValueKind>) -> Outcome<ConstantValue> {
     match &literal.lit {
         Lit::Bool(value) => Ok(ConstantValue::Bool(value.value)),
-        Lit::Float(digits) if matches!(digits.suffix(), "" | "f64") => match digits.base10_parse::<f64>() {
-            Ok(value) => Ok(ConstantValue::Float(value)),
-            Err(_) => refuse(literal.span(), "this number", "numbers of the type f64"),
-        },
+        Lit::Float(digits) if matches!(digits.suffix(), "" | "f64" | "f32") => {
+            match digits.base10_parse::<f64>() {
+                Ok(value) => Ok(ConstantValue::Float(value)),
+                Err(_) => refuse(literal.span(), "this number", "numbers of the type f64"),
+            }
+        }
         Lit::Int(digits)
             if digits.suffix().is_empty() || IntegerKind::from_name(digits.suffix()).is_some() =>
         {

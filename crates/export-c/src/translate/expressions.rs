@@ -322,7 +322,7 @@ fn literal_expression(
         Lit::Bool(value) if !is_negative => {
             Ok(CExpression::value(value.value.to_string(), level, ValueKind::Bool))
         }
-        Lit::Float(digits) if matches!(digits.suffix(), "" | "f64") => {
+        Lit::Float(digits) if matches!(digits.suffix(), "" | "f64" | "f32") => {
             let Ok(value) = digits.base10_parse::<f64>() else {
                 return refuse(literal.span(), "this number", "numbers of the type f64");
             };

@@ -44,9 +44,15 @@ impl CHelper {
         }
     }
 
-    /// Returns the text of the definition.
-    pub(super) fn text(self) -> &'static str {
-        self.definition().1
+    /// Returns the text of the definition, over the bits of a float if `is_single`.
+    pub(super) fn text(self, is_single: bool) -> String {
+        let text = self.definition().1.to_owned();
+        match self {
+            Self::ToBits | Self::FromBits | Self::Abs | Self::Copysign | Self::IsFinite if is_single => {
+                SINGLE_BITS.iter().fold(text, |text, (double, single)| text.replace(double, single))
+            }
+            _ => text,
+        }
     }
 
     fn definition(self) -> (&'static str, &'static str) {
@@ -79,8 +85,16 @@ impl CHelper {
     }
 }
 
+/// Types and masks of the bits of a double, with those of a float.
+const SINGLE_BITS: [(&str, &str); 4] = [
+    ("uint64_t", "uint32_t"),
+    ("UINT64_C(0x7fffffffffffffff)", "UINT32_C(0x7fffffff)"),
+    ("UINT64_C(0x8000000000000000)", "UINT32_C(0x80000000)"),
+    ("UINT64_C(0x7ff0000000000000)", "UINT32_C(0x7f800000)"),
+];
+
 const TO_BITS: &str = "\
-/* Returns the bits of a double. */
+/* Returns the bits of a number. */
 static uint64_t f64_to_bits(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
@@ -88,7 +102,7 @@ static uint64_t f64_to_bits(double x) {
 }
 ";
 const FROM_BITS: &str = "\
-/* Returns the double of bits. */
+/* Returns the number with these bits. */
 static double f64_from_bits(uint64_t bits) {
     double x;
     memcpy(&x, &bits, sizeof x);

@@ -56,7 +56,7 @@ impl FunctionBody<'_> {
                     return self.program.function_kind(index).ok()?.map(|kind| kind.result);
                 }
                 match words(&path.path).first()?.as_str() {
-                    "f64" => Some(ValueKind::F64),
+                    "f64" | "f32" => Some(ValueKind::F64),
                     name => IntegerKind::from_name(name).map(ValueKind::Integer),
                 }
             }
@@ -115,7 +115,7 @@ impl FunctionBody<'_> {
                 self.program.function_kind(index).ok()?.map(|kind| kind.result)
             }
             (_, "is_nan" | "is_finite") => Some(ValueKind::Bool),
-            (_, "to_bits") => Some(ValueKind::Integer(IntegerKind::U64)),
+            (_, "to_bits") => Some(self.program.bits_kind()),
             (_, "leading_zeros") => Some(ValueKind::Integer(IntegerKind::U32)),
             (ValueKind::Array(..) | ValueKind::Slice { .. }, "len") => Some(ValueKind::USIZE),
             _ => Some(receiver),

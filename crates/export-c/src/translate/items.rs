@@ -8,7 +8,9 @@ use syn::{Block, Expr, Fields, Generics, ImplItem, Safety, Signature, Type, UseT
 
 use super::comments::{is_kept, read_docs};
 use super::error::{Outcome, TranslationError, refuse};
+use super::pruning::ConstantChoices;
 use super::translation::SourceFile;
+use super::types::{IntegerKind, ValueKind};
 
 /// Field of a struct.
 pub(super) struct StructField {
@@ -47,17 +49,22 @@ pub(super) struct Program<'a> {
     pub by_path: HashMap<String, usize>,
     /// Path of an imported name, by module and name.
     pub imports: HashMap<(String, String), String>,
+    /// True of a program in single precision.
+    pub is_single: bool,
+    choices: &'a ConstantChoices,
 }
 
 impl<'a> Program<'a> {
     /// Collects the items of all files; `impl` blocks come last, as their types may stand below them.
-    pub(super) fn collect(files: &'a [SourceFile<'a>]) -> Outcome<Self> {
+    pub(super) fn collect(files: &'a [SourceFile<'a>], choices: &'a ConstantChoices) -> Outcome<Self> {
         let mut program = Self {
             files,
             module_docs: Vec::new(),
             items: Vec::new(),
             by_path: HashMap::new(),
             imports: HashMap::new(),
+            is_single: files.iter().any(|file| file.text.contains(": f32")),
+            choices,
         };
         let mut blocks = Vec::new();
         for (index, file) in files.iter().enumerate() {
@@ -67,6 +74,11 @@ impl<'a> Program<'a> {
             program.collect_impl(index, block).map_err(|error| error.in_file(files[index].path))?;
         }
         Ok(program)
+    }
+
+    /// Returns the type of the bits of a number.
+    pub(super) fn bits_kind(&self) -> ValueKind {
+        ValueKind::Integer(if self.is_single { IntegerKind::U32 } else { IntegerKind::U64 })
     }
 
     fn collect_file(&mut self, file: usize, blocks: &mut Vec<(usize, syn::ItemImpl)>) -> Outcome<()> {
@@ -132,7 +144,9 @@ impl<'a> Program<'a> {
                 )
             }
             syn::Item::Fn(item) => {
-                let content = ItemContent::Function { signature: Box::new(item.sig), block: *item.block };
+                let mut block = *item.block;
+                self.choices.prune(&mut block);
+                let content = ItemContent::Function { signature: Box::new(item.sig), block };
                 self.add_function(file, None, &item.attrs, content)
             }
             syn::Item::Impl(item) => {
@@ -197,7 +211,9 @@ impl<'a> Program<'a> {
                     self.add(file, Some(owner), &item.ident, &item.attrs, Some(&item.generics), content)?;
                 }
                 ImplItem::Fn(item) => {
-                    let content = ItemContent::Function { signature: Box::new(item.sig), block: item.block };
+                    let mut block = item.block;
+                    self.choices.prune_method(&self.items[owner].name, &mut block);
+                    let content = ItemContent::Function { signature: Box::new(item.sig), block };
                     self.add_function(file, Some(owner), &item.attrs, content)?;
                 }
                 _ => return refuse(span, "this item of an `impl`", "functions and constants"),

@@ -35,7 +35,7 @@ impl FunctionBody<'_> {
                     "abs" => (CHelper::Abs, ValueKind::F64),
                     "is_nan" => (CHelper::IsNan, ValueKind::Bool),
                     "is_finite" => (CHelper::IsFinite, ValueKind::Bool),
-                    "to_bits" => (CHelper::ToBits, ValueKind::Integer(IntegerKind::U64)),
+                    "to_bits" => (CHelper::ToBits, self.program.bits_kind()),
                     _ => return unknown(call, "f64", FLOAT_METHODS),
                 };
                 Ok(self.helper(helper, &[&receiver.text], result))

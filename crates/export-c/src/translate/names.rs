@@ -80,7 +80,7 @@ fn variant_name(name: &str, variant: &str) -> String {
 
 /// True for names like those of helpers.
 fn is_of_helper(name: &str) -> bool {
-    ["f64_", "i32_", "u32_", "i64_", "u64_", "usize_"].iter().any(|start| name.starts_with(start))
+    ["f64_", "f32_", "i32_", "u32_", "i64_", "u64_", "usize_"].iter().any(|start| name.starts_with(start))
 }
 
 /// Returns a name of a type in snake case: `SinCos` is `sin_cos`.

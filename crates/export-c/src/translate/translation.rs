@@ -10,6 +10,7 @@ use super::items::{ItemContent, Program};
 use super::names::{Names, free_name};
 use super::order::by_module;
 use super::prelude::{GUARDS, INCLUDES};
+use super::pruning::ConstantChoices;
 use super::reach::{reach, refuse_recursion};
 use super::writer::push;
 
@@ -35,6 +36,7 @@ pub struct Translation {
     pub declarations: String,
     /// Helpers, constants and static functions for the .c file, in order.
     pub definitions: String,
+    is_single: bool,
     names: BTreeMap<String, String>,
 }
 
@@ -77,7 +79,17 @@ pub fn translate(
     roots: &[&str],
     prefix: &str,
 ) -> Result<Translation, TranslationError> {
-    let program = Program::collect(files)?;
+    translate_pruned(files, roots, prefix, &ConstantChoices::default())
+}
+
+/// Translates as [`translate`], without the branches that choices which are constant never take.
+pub fn translate_pruned(
+    files: &[SourceFile<'_>],
+    roots: &[&str],
+    prefix: &str,
+    choices: &ConstantChoices,
+) -> Result<Translation, TranslationError> {
+    let program = Program::collect(files, choices)?;
     let names = Names::new(&program, prefix)?;
     let functions = translate_functions(&program, &names)?;
     refuse_recursion(&program, &functions)?;
@@ -93,12 +105,13 @@ pub fn translate(
     }
     let parts = reach(&program, &functions, &indices)?;
     let mut translation = Translation {
+        is_single: program.is_single,
         includes: INCLUDES.to_owned(),
         guards: GUARDS.replace("PREFIX", names.prefix()),
         ..Translation::default()
     };
     for helper in &parts.helpers {
-        translation.definitions += helper.text();
+        translation.definitions += &helper.text(program.is_single);
         translation.definitions.push('\n');
     }
     for index in &parts.items {
@@ -128,7 +141,7 @@ pub fn translate(
         };
         translation.definitions.push('\n');
     }
-    Ok(translation)
+    Ok(if translation.is_single { translation.in_single() } else { translation })
 }
 
 fn translate_functions(program: &Program<'_>, names: &Names) -> Outcome<Vec<Option<TranslatedFunction>>> {
@@ -150,6 +163,15 @@ fn translate_functions(program: &Program<'_>, names: &Names) -> Outcome<Vec<Opti
 }
 
 impl Translation {
+    /// Returns the translation with floats for doubles.
+    fn in_single(mut self) -> Self {
+        for text in [&mut self.declarations, &mut self.definitions] {
+            *text = super::single::in_single(text);
+        }
+        self.guards = super::single::guards(&self.guards);
+        self
+    }
+
     fn record_names(&mut self, program: &Program<'_>, names: &Names, index: usize) {
         let path = program.path(index);
         let mut record = |group: &str, path: &str, name: &str| {

@@ -5231,6 +5231,9 @@ class Keys(TypedDict, total=False):
     mode: Sequence[OperatingMode]
     """Modes of operation, each with a law of its own; a run begins in the first."""
 
+    flight_precision: Literal["double", "single"]
+    """Precision of the flight computer: its estimator, its laws and the distribution of their commands."""
+
     actuator: (
         ActuatorKind | Assigned | Literal["ideal"] | Sequence[ActuatorKind | Assigned | Literal["ideal"]]
     )

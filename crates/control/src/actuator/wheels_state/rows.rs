@@ -3,7 +3,6 @@
 use std::mem;
 
 use flexsc_dynamics::three_axis::RotorObservation;
-use flexsc_flight::wheel_momentum;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::flight_types::to_vector3;
 use flexsc_numerics::time::{Instant, Span};
@@ -80,7 +79,8 @@ impl MomentumStorage for WheelsState {
 
     fn known_momentum(&self, now: Instant, rate: [f64; 3], estimated: [f64; 3]) -> [f64; 3] {
         let (axes, speeds) = (self.allocation.flight_axes(), self.wheel_speeds(now, rate));
-        let stored = wheel_momentum::stored(axes, self.inertia, &speeds, &to_vector3(&estimated.into()));
+        let (precision, rate) = (self.allocation.precision(), to_vector3(&estimated.into()));
+        let stored = precision.stored_momentum(axes, self.inertia, &speeds, &rate);
         [stored.x, stored.y, stored.z]
     }
 

@@ -1,6 +1,7 @@
 //! Estimates of an attitude filter with their covariance, as logs and checks read them.
 
 use flexsc_flight::attitude_filter::AttitudeBiasFilter;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::attitude::{Vector, rotation_vector};
 use flexsc_numerics::flight_types::{
     from_matrix6, from_quaternion, from_vector3, to_matrix6, to_quaternion, to_vector3,
@@ -20,8 +21,8 @@ pub struct AttitudeFilterState {
 
 impl AttitudeFilterState {
     /// Creates a filter with this attitude, bias and standard deviations about each axis (rad, rad/s).
-    pub fn new(attitude: Quaternion<f64>, bias: Vector, [angle, rate]: [f64; 2]) -> Self {
-        Self::from_flight(&AttitudeBiasFilter::new(to_quaternion(&attitude), to_vector3(&bias), angle, rate))
+    pub fn new(precision: Precision, attitude: Quaternion<f64>, bias: Vector, deviations: [f64; 2]) -> Self {
+        Self::from_flight(&precision.filter(to_quaternion(&attitude), to_vector3(&bias), deviations))
     }
 
     /// Returns the state of the filter in flight code.

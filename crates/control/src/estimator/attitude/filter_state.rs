@@ -5,7 +5,7 @@ use std::mem;
 use flexsc_flight::attitude_estimator::{gyro_exposure, observation_exposure};
 use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
-use flexsc_numerics::flight_types::to_vector3;
+use flexsc_numerics::flight_types::{from_vector3, to_vector3};
 use flexsc_numerics::random::Stream;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{
@@ -89,7 +89,8 @@ impl AttitudeFilterRun {
                 let status = history.judge_gyro(exposed, rate.into());
                 self.refusals.extend(refusal(sensor, &Correction::unused(status)));
                 if !status.is_refusal() {
-                    self.rate = rate.into();
+                    let rounded = self.setting.precision.rounded_vector(&to_vector3(&rate.into()));
+                    self.rate = from_vector3(&rounded);
                     for (sensor, result) in history.add_gyro(exposed, self.rate) {
                         self.refusals.extend(refusal(sensor, &result));
                         last = Some(result).filter(|result| result.status.has_corrected()).or(last);
@@ -118,7 +119,9 @@ impl AttitudeFilterRun {
         }
         self.used = last.is_some();
         self.last_correction = last.unwrap_or(Correction::NONE);
-        self.innovation = last.map_or(self.innovation, |correction| correction.innovation.norm());
+        self.innovation = last.map_or(self.innovation, |correction| {
+            self.setting.precision.innovation_size(&correction.innovation)
+        });
     }
 
     /// Returns the attitude at `now`, propagated with the last gyro reading.
@@ -126,7 +129,7 @@ impl AttitudeFilterRun {
         if let Some((_, attitude)) = self.sampled.filter(|(sampled, _)| *sampled == now) {
             return Some(attitude);
         }
-        Some(self.history.as_ref()?.attitude_after(&self.rate, now.since(self.since).seconds()))
+        Some(self.history.as_ref()?.attitude_after(&self.rate, now.since(self.since)))
     }
 
     /// Returns the elastic part of the last gyro reading (rad/s) that is removed from the rate for the laws.
@@ -146,6 +149,11 @@ impl AttitudeFilterRun {
             Some(elastic) => hub * rotation(&-elastic.hub_rotation()),
             None => hub,
         }
+    }
+
+    /// Returns the angles (rad) of an attitude from an origin, as laws read them.
+    fn angles_from(&self, origin: &Orientation, attitude: Quaternion<f64>) -> [f64; 3] {
+        origin.angles_to(&Orientation::Attitude(attitude), self.setting.precision)
     }
 }
 
@@ -182,7 +190,8 @@ pub fn initial_state(
             *off = Vector::from_fn(|_, _| deviation * draws.normal());
         }
     }
-    AttitudeFilterState::new(attitude * rotation(&off[0]), setting.bias + off[1], deviations)
+    let (attitude, bias) = (attitude * rotation(&off[0]), setting.bias + off[1]);
+    AttitudeFilterState::new(setting.precision, attitude, bias, deviations)
 }
 
 impl FilterSetup {
@@ -308,6 +317,7 @@ impl Estimator for AttitudeFilterRun {
                 self.setting.noise,
                 self.setting.reach,
                 self.setting.gate,
+                self.setting.precision,
             );
             history.set_torque(now, self.torque);
             self.history = Some(history);
@@ -318,7 +328,8 @@ impl Estimator for AttitudeFilterRun {
         let (Some(history), Some((_, attitude))) = (&self.history, self.sampled) else { return };
         let (attitude, elastic) = (self.attitude_for_laws(attitude), self.elastic_rate());
         let bias = history.bias();
-        let angles = Orientation::Attitude(attitude).error_from(context.origin);
+        let angles = self.angles_from(context.origin, attitude);
+        let rate = self.setting.precision.difference(&to_vector3(&self.rate), &to_vector3(&bias));
         self.sampled_angles = Some((*context.origin, angles));
         for (axis, state_estimate) in state_estimates.iter_mut().enumerate() {
             if self.spec.watch_only {
@@ -327,7 +338,7 @@ impl Estimator for AttitudeFilterRun {
                 }
             } else {
                 (state_estimate.angle, state_estimate.rate) =
-                    (angles[axis], self.rate[axis] - bias[axis] - elastic[axis]);
+                    (angles[axis], rate.component(axis) - elastic[axis]);
             }
         }
     }
@@ -338,7 +349,7 @@ impl Estimator for AttitudeFilterRun {
         let angles =
             match self.sampled_angles.filter(|(counted_from, _)| is_sampled && counted_from == origin) {
                 Some((_, angles)) => angles,
-                None => Orientation::Attitude(self.attitude_for_laws(attitude)).error_from(origin),
+                None => self.angles_from(origin, self.attitude_for_laws(attitude)),
             };
         state_estimates
             .iter_mut()
@@ -355,9 +366,10 @@ impl Estimator for AttitudeFilterRun {
 
     fn filter_health(&self, now: Instant) -> Option<FilterHealth> {
         let history = self.history.as_ref()?;
-        let [angle, _] = history.latest().deviations();
-        let age = now.since(history.corrected()).seconds();
-        Some(FilterHealth { age, innovation: self.innovation, deviation: to_vector3(&angle.into()).norm() })
+        let precision = self.setting.precision;
+        let age = precision.seconds(now.since(history.corrected()).ticks());
+        let deviation = precision.deviation_size(&history.latest().to_flight());
+        Some(FilterHealth { age, innovation: self.innovation, deviation })
     }
 
     fn copy(&self) -> Box<dyn Estimator> {

@@ -5,6 +5,7 @@ use flexsc_flight::attitude_gate::AttitudeGate;
 use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
 use flexsc_flight::attitude_observation::Correction;
 use flexsc_flight::reading_status::ReadingStatus;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::flight_types::{from_quaternion, from_vector3, to_vector3};
 use flexsc_numerics::time::{Instant, Span};
@@ -31,6 +32,7 @@ pub struct RigidHistory {
     counts: AttitudeHistory,
     entries: Vec<AttitudeHistoryEntry>,
     observations: Vec<DelayedObservation>,
+    precision: Precision,
 }
 
 impl RigidHistory {
@@ -42,12 +44,12 @@ impl RigidHistory {
     /// it.
     fn add_gyro(&mut self, now: Instant, reading: Vector) -> Vec<(usize, Correction)> {
         self.grow();
-        let Self { counts, entries, observations } = self;
+        let Self { counts, entries, observations, precision } = self;
         let (now, mut results, mut early) = (now.ticks(), Vec::new(), 0);
-        if counts.add_interval(now, to_vector3(&reading), entries, observations) {
+        if precision.add_interval(counts, now, to_vector3(&reading), entries, observations) {
             while early < counts.waiting {
                 let sensor = observations[counts.applied + early].sensor;
-                match with_result(counts.apply_waiting(early, now, entries, observations)) {
+                match with_result(precision.apply_waiting(counts, early, now, entries, observations)) {
                     Some(result) => results.push((sensor, result)),
                     None => early += 1,
                 }
@@ -59,7 +61,7 @@ impl RigidHistory {
 
     /// Lets the storage grow before a call, which then never finds it full, and rarely moves entries within it.
     fn grow(&mut self) {
-        let Self { counts, entries, observations } = self;
+        let Self { counts, entries, observations, .. } = self;
         let least = 2 * (counts.entries + counts.waiting + 2);
         if entries.len() < least {
             entries.resize(2 * least, AttitudeHistoryEntry::NONE);
@@ -90,6 +92,7 @@ impl FilterHistory {
         noise: GyroNoise,
         reach: Span,
         gate: AttitudeGate,
+        precision: Precision,
     ) -> Self {
         if let Some(modes) = modes {
             return Self::Elastic(ElasticHistory::new(
@@ -104,7 +107,7 @@ impl FilterHistory {
         let reach = (Instant::START + reach).ticks();
         let counts =
             AttitudeHistory::start(time.ticks(), state.to_flight(), noise, reach, gate, &mut entries);
-        Self::Rigid(RigidHistory { counts, entries, observations: Vec::new() })
+        Self::Rigid(RigidHistory { counts, entries, observations: Vec::new(), precision })
     }
 
     /// Returns the state of the filter after everything it has received.
@@ -131,14 +134,16 @@ impl FilterHistory {
         }
     }
 
-    /// Returns the attitude `seconds` after the last gyro reading, with the gyro's rate `reading` (rad/s).
-    pub fn attitude_after(&self, reading: &Vector, seconds: f64) -> Quaternion<f64> {
+    /// Returns the attitude a span after the last gyro reading, with the gyro's rate `reading` (rad/s).
+    pub fn attitude_after(&self, reading: &Vector, span: Span) -> Quaternion<f64> {
         match self {
             Self::Rigid(history) => {
-                from_quaternion(&history.latest().filter.attitude_after(&to_vector3(reading), seconds))
+                let (filter, reading) = (&history.latest().filter, to_vector3(reading));
+                from_quaternion(&history.precision.attitude_after(filter, &reading, span.ticks()))
             }
             Self::Elastic(history) => {
                 let ElasticFilter { state, modes } = history.latest();
+                let seconds = span.seconds();
                 let turn = (reading - state.bias) * seconds - modes.rates()[1] * seconds;
                 state.attitude * rotation(&turn)
             }
@@ -155,8 +160,8 @@ impl FilterHistory {
     /// Returns the outcome of a gyro reading (rad/s) of an interval that ends at `now`, before it is added.
     pub fn judge_gyro(&mut self, now: Instant, reading: Vector) -> ReadingStatus {
         match self {
-            Self::Rigid(RigidHistory { counts, entries, .. }) => {
-                counts.judge_gyro(now.ticks(), &to_vector3(&reading), entries)
+            Self::Rigid(RigidHistory { counts, entries, precision, .. }) => {
+                precision.judge_gyro(counts, now.ticks(), &to_vector3(&reading), entries)
             }
             Self::Elastic(history) if history.gate.is_sound_rate(&to_vector3(&reading)) => {
                 ReadingStatus::Accepted
@@ -188,8 +193,9 @@ impl FilterHistory {
         match self {
             Self::Rigid(history) => {
                 history.grow();
-                let RigidHistory { counts, entries, observations } = history;
-                with_result(counts.add_observation(measurement.to_flight(), entries, observations))
+                let RigidHistory { counts, entries, observations, precision } = history;
+                let measurement = measurement.to_flight();
+                with_result(precision.add_observation(counts, measurement, entries, observations))
             }
             Self::Elastic(history) if measurement.to_flight().observation.is_sound() => {
                 history.add_measurement(measurement)

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_flight::attitude_gate::AttitudeGate;
+use flexsc_flight_precision::Precision;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{NonNegative, Positive};
@@ -183,6 +184,8 @@ pub struct FilterSetup {
     pub modes: Option<Arc<FilterModes>>,
     /// Environment with the magnetic field of the filter's model; `None` if the model is the true field.
     pub field_model: Option<OrbitEnvironment>,
+    /// Precision of the flight computer.
+    pub precision: Precision,
 }
 
 /// Body, points at which its sensors are mounted, and true if jets drive it.
@@ -199,6 +202,7 @@ impl EstimatorSpec for AttitudeFilter {
             is_assessed_only: self.watch_only,
             fuses_sensors: true,
             needs_reader: true,
+            has_single_precision: self.elastic.is_none(),
             ..EstimatorOffers::default()
         }
     }
@@ -281,7 +285,16 @@ impl AttitudeFilter {
         let modes = self.modes(gyro, read, mounted)?.map(Arc::new);
         let field_model = self.field_model(sensors, sky)?;
         let gate = self.gate.to_flight(gyro);
-        Ok(FilterSetup { roles, noise: gyro_noise, bias, reach: latest + period, gate, modes, field_model })
+        Ok(FilterSetup {
+            roles,
+            noise: gyro_noise,
+            bias,
+            reach: latest + period,
+            gate,
+            modes,
+            field_model,
+            precision: Precision::Double,
+        })
     }
 
     /// Returns the environment with the magnetic field of the filter's model, if that is not the true field.

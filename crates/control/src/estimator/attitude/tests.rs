@@ -3,6 +3,7 @@
 use flexsc_flight::attitude_gate::AttitudeGate;
 use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_flight::ticks::Ticks;
+use flexsc_flight_precision::Precision;
 use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::time::{Instant, Span};
 use nalgebra::{Matrix3, Quaternion};
@@ -32,7 +33,7 @@ fn first() -> AttitudeFilterState {
         -0.480_412_696_190_943,
         0.000_628_418_145_252_526_5,
     );
-    AttitudeFilterState::new(attitude, Vector::zeros(), [1e-3, 1e-5])
+    AttitudeFilterState::new(Precision::Double, attitude, Vector::zeros(), [1e-3, 1e-5])
 }
 
 /// Returns the covariance of a star tracker with boresight z, rotated to body axes.
@@ -59,7 +60,8 @@ fn fix(read: &[Vec<f64>], k: usize) -> DelayedMeasurement {
 /// Returns the filter's history after each reading, with attitudes that arrive `late` readings after exposure.
 fn replay(late: usize) -> Vec<FilterHistory> {
     let read = rows(READ);
-    let mut history = FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(0.5), GATE);
+    let mut history =
+        FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(0.5), GATE, Precision::Double);
     let mut states = vec![history.clone()];
     for k in 1..read.len() {
         history.add_gyro(at(k), Vector::from_column_slice(&read[k][2..5]));
@@ -84,7 +86,8 @@ fn whatever_is_late_comes_to_the_same() {
     // The attitude between readings is that of another instant, which a gate would refuse.
     let open = AttitudeGate { most_nis: 1e12, ..GATE };
     let build = |order: [usize; 2]| {
-        let mut history = FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(1.0), open);
+        let mut history =
+            FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(1.0), open, Precision::Double);
         for row in &read[1..6] {
             history.add_gyro(at(row[0] as usize), Vector::from_column_slice(&row[2..5]));
         }
@@ -104,7 +107,8 @@ fn whatever_is_late_comes_to_the_same() {
 fn a_measurement_waits_for_its_reading_and_not_for_ever() {
     let read = rows(READ);
     let reading = |k: usize| Vector::from_column_slice(&read[k][2..5]);
-    let mut history = FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(0.5), GATE);
+    let mut history =
+        FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(0.5), GATE, Precision::Double);
     assert!(history.add_measurement(&fix(&read, 4)).is_none());
     for k in 1..12 {
         assert_eq!(!history.add_gyro(at(k), reading(k)).is_empty(), k == 4);

@@ -17,7 +17,8 @@ enum { MOST_FUNCTIONS = 8, TURNS = 1000 };
 
 static uint32_t began;
 static uint32_t overhead;
-static uint32_t worst[MOST_FUNCTIONS];
+static uint32_t worst[COUNT_SOURCES][MOST_FUNCTIONS];
+static int source;
 
 __attribute__((noinline)) void count_begin(void)
 {
@@ -28,19 +29,19 @@ __attribute__((noinline)) void count_end(size_t function)
 {
     const uint64_t ticks = began - TIMER[1];
     const uint32_t count = (uint32_t)((ticks * 10u + TICKS_OF_TEN / 2u) / TICKS_OF_TEN) - overhead;
-    if (function < MOST_FUNCTIONS && count > worst[function]) {
-        worst[function] = count;
+    if (function < MOST_FUNCTIONS && count > worst[source][function]) {
+        worst[source][function] = count;
     }
 }
 
 /* Returns the count of a loop of two instructions. */
 static uint32_t count_of_loop(uint32_t turns)
 {
-    worst[0] = 0;
+    worst[source][0] = 0;
     count_begin();
     __asm volatile("1: subs %0, %0, #1\n\tbne 1b" : "+r"(turns) : : "cc");
     count_end(0);
-    return worst[0];
+    return worst[source][0];
 }
 
 void count_start(void)
@@ -51,15 +52,22 @@ void count_start(void)
     overhead = 0;
     count_begin();
     count_end(0);
-    overhead = worst[0];
+    overhead = worst[source][0];
     const uint32_t known = count_of_loop(2 * TURNS) - count_of_loop(TURNS);
-    worst[0] = 0;
+    worst[source][0] = 0;
     printf("a loop of %lu instructions: %lu counted\n", (unsigned long)(2 * TURNS), (unsigned long)known);
+}
+
+void count_inputs(int from)
+{
+    source = from;
 }
 
 void count_print(const char *const *names, size_t functions)
 {
     for (size_t function = 0; function < functions && function < MOST_FUNCTIONS; ++function) {
-        printf("%s: at most %lu instructions\n", names[function], (unsigned long)worst[function]);
+        printf("%s: at most %lu instructions in the run, %lu with random inputs, %lu with extreme ones\n", names[function],
+            (unsigned long)worst[COUNT_RUN][function], (unsigned long)worst[COUNT_RANDOM][function],
+            (unsigned long)worst[COUNT_EXTREME][function]);
     }
 }

@@ -11,7 +11,11 @@ void count_start(void);
 void count_begin(void);
 void count_end(size_t function);
 
-/* Prints the largest count of each function. */
+/* Says whence the inputs of the next calls are. */
+enum { COUNT_RUN, COUNT_RANDOM, COUNT_EXTREME, COUNT_SOURCES };
+void count_inputs(int from);
+
+/* Prints the largest counts of each function. */
 void count_print(const char *const *names, size_t functions);
 
 #endif
