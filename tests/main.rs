@@ -54,6 +54,7 @@ mod adaptive;
 mod attitude_filter;
 mod bearings;
 mod blinding;
+mod broadband;
 mod budget_levels;
 mod conflicts;
 mod convergence;

@@ -8,7 +8,7 @@ use crate::util::Dir;
 
 /// Telescope of two mirrors and a detector on a hub, with a wheel unit that is bolted to it. Source: the bench of micro-vibration
 /// of `tests/golden/optics.py`.
-const BENCH: &str = r#"
+pub const BENCH: &str = r#"
 duration = 2.0
 seed = 1
 [spacecraft]

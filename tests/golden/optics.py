@@ -57,26 +57,34 @@ def mass(m, inertia, at):
     return there.T @ np.block([[m * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), inertia]]) @ there
 
 
-def answers(hertz):
-    """The sizes of the line of sight about x and y for forces along x and z, and torques about x and z."""
-    w, hub = 2 * np.pi * hertz, np.diag([4.2, 3.9, 4.8])
+HUB, CARRIED = np.diag([4.2, 3.9, 4.8]), np.diag([9e-4, 1.6e-3, 9e-4])
+
+
+def bench():
+    """The mass, damping and stiffness of the free body, and the loads of the wheel unit and the line of sight over its motion."""
     m, d, k = (np.zeros((9, 9)) for _ in range(3))
-    m[:6, :6] = mass(62.0, hub, np.zeros(3)) + mass(0.95, np.diag([9e-4, 1.6e-3, 9e-4]), WHEEL)
+    m[:6, :6] = mass(62.0, HUB, np.zeros(3)) + mass(0.95, CARRIED, WHEEL)
     m[:6, :6] += mass(18.0, np.diag([0.92, 0.92, 0.31]), JOINT + np.array([0, 0, 0.30]))
     m[6:, :6] = SHAPES @ rigid(JOINT)
     m[:6, 6:] = m[6:, :6].T
     m[6:, 6:] = np.eye(3)
-    loop = 2 * np.pi * 0.05
-    k[3:6, 3:6], d[3:6, 3:6] = hub * loop**2, 1.4 * loop * hub
-    hold = 2 * np.pi * 0.02
-    k[:3, :3], d[:3, :3] = 62.0 * hold**2 * np.eye(3), 1.4 * 62.0 * hold * np.eye(3)
-    d[3:6, 3:6] -= across(np.array([0, 1.6e-3 * 2 * np.pi * 50, 0]))
     k[6:, 6:], d[6:, 6:] = np.diag(MODES**2), np.diag(2 * DAMPING * MODES)
     sight = np.zeros((2, 9))
     for at, shift, turn, by_rotation, by_translation in OPTICS:
         rows = np.hstack([rigid(JOINT + np.array(at)), np.hstack([np.array(shift), np.array(turn)]).T])
         sight += np.hstack([np.array(by_translation), np.array(by_rotation)]) @ rows
-    loads = np.vstack([rigid(WHEEL).T, np.zeros((3, 6))])
+    return m, d, k, np.vstack([rigid(WHEEL).T, np.zeros((3, 6))]), sight
+
+
+def answers(hertz):
+    """The sizes of the line of sight about x and y for forces along x and z, and torques about x and z."""
+    w = 2 * np.pi * hertz
+    m, d, k, loads, sight = bench()
+    loop = 2 * np.pi * 0.05
+    k[3:6, 3:6], d[3:6, 3:6] = HUB * loop**2, 1.4 * loop * HUB
+    hold = 2 * np.pi * 0.02
+    k[:3, :3], d[:3, :3] = 62.0 * hold**2 * np.eye(3), 1.4 * 62.0 * hold * np.eye(3)
+    d[3:6, 3:6] -= across(np.array([0, 1.6e-3 * 2 * np.pi * 50, 0]))
     return np.abs(sight @ np.linalg.solve(k + 1j * w * d - w * w * m, loads))[:, [0, 2, 3, 5]]
 
 

@@ -75,6 +75,15 @@ pub enum SimulationError {
         /// Number of events within a nanosecond.
         count: u32,
     },
+    /// A broadband load over frequency has no filters that a run could simulate.
+    #[error(
+        "`disturbance[{index}].density.table` has no run: `spectrum` and the linear loop have it; give `force` or `torque` with the \
+         corners `lower` and `upper` for runs"
+    )]
+    DensityTable {
+        /// Index of the disturbance.
+        index: usize,
+    },
     /// A custom part cannot go on.
     #[error("the {role} at t = {at} s: {source}")]
     Own {

@@ -41,6 +41,13 @@ pub struct SpectralLine {
     pub amplitude: f64,
 }
 
+impl SpectralLine {
+    /// Returns the mean square.
+    pub fn mean_square(&self) -> f64 {
+        0.5 * self.amplitude * self.amplitude
+    }
+}
+
 /// Lines of an output under a load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OutputLines {
@@ -58,7 +65,7 @@ impl OutputLines {
 
     /// Returns the mean square of all lines.
     pub fn mean_square(&self) -> f64 {
-        self.all().map(|line| 0.5 * line.amplitude * line.amplitude).sum()
+        self.all().map(SpectralLine::mean_square).sum()
     }
 }
 
@@ -66,7 +73,7 @@ impl OutputLines {
 pub struct LineLoop<'a> {
     pub(super) parts: LoopParts<'a>,
     /// Outputs as rows over the states of the body.
-    rows: Vec<OutputRow>,
+    pub(super) rows: Vec<OutputRow>,
 }
 
 impl<'a> LineLoop<'a> {
@@ -75,9 +82,13 @@ impl<'a> LineLoop<'a> {
     /// # Errors
     /// A part that is not linear: its key, and the reason.
     pub fn from_scenario(scenario: &'a Scenario) -> Result<Self, ConfigError> {
-        let parts = LoopParts::from_scenario(scenario, LoopBreak::Command)?;
+        Ok(Self::from_parts(LoopParts::from_scenario(scenario, LoopBreak::Command)?))
+    }
+
+    /// Returns the closed loop of these parts, which are cut open at the command.
+    pub(crate) fn from_parts(parts: LoopParts<'a>) -> Self {
         let rows = outputs(&parts).1;
-        Ok(Self { parts, rows })
+        Self { parts, rows }
     }
 
     /// Returns the load of a torque that turns about one axis of the actuators.
@@ -168,7 +179,7 @@ impl<'a> LineLoop<'a> {
     }
 
     /// Returns the frequencies of the lines below the Nyquist frequency of the law, and last that of the load.
-    fn turns(&self, frequency: f64) -> Result<LineFrequencies, ConfigError> {
+    pub(super) fn turns(&self, frequency: f64) -> Result<LineFrequencies, ConfigError> {
         let PeriodTimes { period, step } = PeriodTimes::new(&self.parts)?;
         let (period, nyquist) = (seconds(period), PI / seconds(step));
         let first = libm::ceil((-nyquist - frequency) * period / TAU - 1e-9) as i64;
@@ -179,7 +190,7 @@ impl<'a> LineLoop<'a> {
     }
 
     /// Returns the parts of the loop with oscillators as further states of the body, two for each load.
-    fn driven(&self, frequency: f64, loads: &[SineLoad]) -> LoopParts<'a> {
+    pub(super) fn driven(&self, frequency: f64, loads: &[SineLoad]) -> LoopParts<'a> {
         let mut parts = self.parts.clone();
         let body = &mut parts.body;
         let order = body.a.nrows();
@@ -223,9 +234,9 @@ impl TurningMotion {
 }
 
 /// Frequencies (rad/s, with a sign) of the lines over a period (s), the last that of the load.
-struct LineFrequencies {
-    frequencies: Vec<f64>,
-    period: f64,
+pub(super) struct LineFrequencies {
+    pub frequencies: Vec<f64>,
+    pub period: f64,
 }
 
 impl LineFrequencies {
@@ -247,16 +258,27 @@ impl LineFrequencies {
     }
 
     /// Returns the amplitude of a command, which is constant in each piece.
-    fn command_amplitude(
+    pub fn command_amplitude(
         &self,
         pieces: &[Piece],
         axis: usize,
         state: &DVector<Complex<f64>>,
         place: usize,
     ) -> Complex<f64> {
+        self.held_amplitude((pieces, |piece| &piece.command), axis, state, place)
+    }
+
+    /// Returns the amplitude of a row of what is constant in each piece.
+    pub fn held_amplitude(
+        &self,
+        (pieces, of_piece): (&[Piece], fn(&Piece) -> &DMatrix<f64>),
+        row: usize,
+        state: &DVector<Complex<f64>>,
+        place: usize,
+    ) -> Complex<f64> {
         let frequency = self.frequencies[place];
         let part = |piece: &Piece| {
-            let value: Complex<f64> = piece.command.row(axis).iter().zip(state).map(|(c, s)| s * *c).sum();
+            let value: Complex<f64> = of_piece(piece).row(row).iter().zip(state).map(|(c, s)| s * *c).sum();
             let (from, length) = (seconds(piece.from), seconds(piece.length));
             // The mean of exp(-j w t) over the piece.
             let half = 0.5 * frequency * length;
@@ -269,7 +291,7 @@ impl LineFrequencies {
 
 /// Returns the states at the start of a period, as complex amplitudes, of a loop that two oscillators drive for each load:
 /// `oscillators` and all indices in `outside` are no states of the loop itself.
-fn loop_states(
+pub(super) fn loop_states(
     period_rows: &PeriodRows,
     oscillators: &[usize],
     outside: Range<usize>,

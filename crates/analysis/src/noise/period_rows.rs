@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 
 use super::schedule::{Draws, Schedule};
 use super::source::{NoiseEntry, NoiseSource};
-use crate::open_loop::LoopParts;
+use crate::open_loop::{BodyMatrices, LoopParts};
 use crate::open_loop::attitude_rows::{AttitudeRows, SensorErrors, seconds};
 use crate::open_loop::block_matrices::stacked;
 use crate::open_loop::multi_rate::read_states;
@@ -46,6 +46,9 @@ pub struct PeriodRows {
     /// States that are kept, as indices: those of the body are the first.
     pub kept: Vec<usize>,
 }
+
+/// Flow of a body over a time (fs): its states after it, per state before and per constant torque.
+pub(super) type Flow<'a> = &'a dyn Fn(&BodyMatrices, i64) -> (DMatrix<f64>, DMatrix<f64>);
 
 /// Sensors, estimator and law.
 enum ControllerRows {
@@ -86,6 +89,20 @@ impl PeriodRows {
         sources: &[NoiseSource],
         drivers: &[usize],
     ) -> Result<Self, ConfigError> {
+        let exact = |body: &BodyMatrices, length: i64| held(&body.a, &body.b, seconds(length));
+        Self::with_flow(parts, sources, drivers, &exact)
+    }
+
+    /// Goes through a period of a driven loop whose body has a known flow.
+    ///
+    /// # Errors
+    /// See [`Self::new`].
+    pub fn with_flow(
+        parts: &LoopParts<'_>,
+        sources: &[NoiseSource],
+        drivers: &[usize],
+        flow: Flow<'_>,
+    ) -> Result<Self, ConfigError> {
         let order = parts.body.a.nrows();
         let filter = parts.parts.attitude.as_ref().map(|filter| AttitudeRows::new(filter, order));
         let schedule = Schedule::new(parts, filter.as_ref(), sources)?;
@@ -108,7 +125,7 @@ impl PeriodRows {
         let size = order + known + axes * (1 + late) + memory;
         let identity = DMatrix::identity(size, size + draws.count(schedule.period));
         let mut rows = LoopRows::start(&identity, controller, (order, &start), (axes, late), sources);
-        let pieces = rows.run(parts, &schedule, &draws, size);
+        let pieces = rows.run(parts, (&schedule, flow), &draws, size);
         Ok(Self::trimmed(&rows.state(), pieces, (size, drivers), &schedule, &draws))
     }
 
@@ -298,7 +315,7 @@ impl LoopRows {
     fn run(
         &mut self,
         parts: &LoopParts<'_>,
-        schedule: &Schedule,
+        (schedule, flow_over): (&Schedule, Flow<'_>),
         draws: &Draws<'_>,
         size: usize,
     ) -> Vec<Piece> {
@@ -332,8 +349,7 @@ impl LoopRows {
                 self.acting = next * gain;
             }
             let torque = self.torque(draws.sources);
-            let (flow, forced) =
-                flows.entry(length).or_insert_with(|| held(&parts.body.a, &parts.body.b, seconds(length)));
+            let (flow, forced) = flows.entry(length).or_insert_with(|| flow_over(&parts.body, length));
             let after = &*flow * &self.body + &*forced * &torque;
             let body = std::mem::replace(&mut self.body, after);
             pieces.push(Piece { from: now, length, body, torque, command: self.command.clone() });

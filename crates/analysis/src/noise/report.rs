@@ -1,5 +1,7 @@
 //! Noise of the outputs of a loop in numbers: rms by source, densities, and indices over windows.
 
+use std::f64::consts::TAU;
+
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::reader_units::ReaderUnits;
 use schemars::JsonSchema;
@@ -9,9 +11,10 @@ use serde_json::Value as Json;
 use super::density::cumulative_rms;
 use super::image_contrast::ImageBlur;
 use super::imbalance::{WheelImbalance, WheelSpectrum};
-use super::lines::LineLoop;
+use super::lines::{LineLoop, SpectralLine};
 use super::noisy_loop::{NoiseError, NoisyLoop};
 use super::window_rms::WindowRms;
+use super::vibration::{SourceMotion, Vibration};
 use super::windows::Window;
 use flexsc_scenario::Scenario;
 
@@ -49,7 +52,7 @@ pub struct NoiseReport {
     pub nyquist_hz: f64,
     /// Sources of noise: keys of the scenario.
     pub sources: Vec<String>,
-    /// Frequencies of the densities (Hz), up to the Nyquist frequency.
+    /// Frequencies of the densities (Hz): up to the Nyquist frequency, and with broadband loads as far as these go.
     pub frequency_hz: Vec<f64>,
     /// Noise of each output.
     #[schemars(extend("x-key" = "output"))]
@@ -74,7 +77,7 @@ pub struct OutputNoise {
     /// Rms over time from each source.
     #[schemars(extend("x-names" = "sources"))]
     pub rms_by_source: Vec<f64>,
-    /// One-sided power spectral density at the samples (unit² per Hz).
+    /// One-sided power spectral density (unit² per Hz): of noise at the samples, of broadband loads of the motion itself.
     pub density: Vec<f64>,
     /// Density from each source (unit² per Hz).
     #[schemars(extend("x-names" = "sources"))]
@@ -98,27 +101,37 @@ impl NoiseReport {
     pub fn from_scenario(scenario: &Scenario, request: &NoiseRequest) -> Result<Self, NoiseError> {
         let noisy = NoisyLoop::from_scenario(scenario)?;
         let outputs = chosen(&noisy, &request.signals)?;
+        let lines = LineLoop::from_scenario(scenario)?;
+        let vibration = Vibration::new(&lines, &outputs, &|_, lines| Self::measure(lines, request.window))?;
         let wheels = wheel_spectrum(scenario, request.speeds.clone(), &outputs)?;
         let wheels = match request.window {
             Some(window) => wheels.map(|wheels| wheels.over_windows(window)),
             None => wheels,
         };
-        if noisy.sources.is_empty() && wheels.is_none() {
+        if noisy.sources.is_empty() && vibration.sources.is_empty() && wheels.is_none() {
             let why =
                 "has no noise: neither sensors nor `disturbance` have any, and no wheels have `imbalance`";
             return Err(NoiseError::Key(ConfigError::new("sensor", why)));
         }
         let mut report = Self::new(&noisy, &outputs, request.window).map_err(NoiseError::Request)?;
         report.wheels = wheels;
+        if !vibration.sources.is_empty() {
+            report.add_vibration(&noisy, &outputs, &vibration);
+        }
         if let Some(pixel) = request.pixel {
-            report.add_contrast(&noisy, &outputs, pixel).map_err(NoiseError::Request)?;
+            report.add_contrast(&noisy, (&outputs, &vibration), pixel).map_err(NoiseError::Request)?;
         }
         Ok(report)
     }
 
     /// Adds the modulation transfer of the motion of an image at the Nyquist frequency of pixels of an angle (rad), during windows if
     /// there are any: of the noise, and of the noise and the lines of the wheels at each speed.
-    fn add_contrast(&mut self, noisy: &NoisyLoop, outputs: &[usize], pixel: f64) -> Result<(), String> {
+    fn add_contrast(
+        &mut self,
+        noisy: &NoisyLoop,
+        (outputs, vibration): (&[usize], &Vibration),
+        pixel: f64,
+    ) -> Result<(), String> {
         if !(LEAST_PIXEL..=MOST_PIXEL).contains(&pixel) {
             let [least, most, got] =
                 [LEAST_PIXEL, MOST_PIXEL, pixel].map(|angle| ReaderUnits::Engineering.quantity(angle, "rad"));
@@ -129,7 +142,11 @@ impl NoiseReport {
         let mut over_speed = Vec::new();
         for (place, own) in self.outputs.iter_mut().enumerate().filter(|(_, own)| own.unit == "rad") {
             let exposure = own.window.map(|window| window.window_s);
-            let blur = ImageBlur::new(noisy, outputs[place], exposure, fastest)?;
+            let [bands, tones] = [true, false].map(|is_gaussian| {
+                vibration.lines(outputs[place], is_gaussian).copied().collect::<Vec<SpectralLine>>()
+            });
+            let fastest = tones.iter().map(|line| line.frequency_rad_s).fold(fastest, f64::max);
+            let blur = ImageBlur::new(noisy, outputs[place], (exposure, fastest), &bands)?.with_lines(tones);
             own.mtf = Some(blur.contrast(nyquist, &[]));
             over_speed.push((place, blur));
         }
@@ -140,6 +157,56 @@ impl NoiseReport {
             wheels.add_contrast(nyquist, &over_speed);
         }
         Ok(())
+    }
+
+    /// Returns the measure of lines that is largest at the worst frequency of a machine: within windows if there are any.
+    fn measure(lines: &[SpectralLine], window: Option<Window>) -> f64 {
+        match window {
+            Some(window) => WindowRms::from_lines(lines.iter().copied(), window).rpe_uniform,
+            None => lines.iter().map(SpectralLine::mean_square).sum(),
+        }
+    }
+
+    /// Adds the motion of the outputs under machines.
+    fn add_vibration(&mut self, noisy: &NoisyLoop, outputs: &[usize], vibration: &Vibration) {
+        let sampled = self.frequency_hz.clone();
+        if !vibration.frequency_hz.is_empty() {
+            // The nodes of the integral follow the resonances as the grid of the noise does.
+            self.frequency_hz.clone_from(&vibration.frequency_hz);
+        }
+        let within = self.frequency_hz.partition_point(|frequency| *frequency <= self.nyquist_hz);
+        let densities = noisy.densities(outputs, &self.frequency_hz[..within]);
+        self.sources.extend(vibration.sources.iter().cloned());
+        for ((own, output), mut density) in self.outputs.iter_mut().zip(outputs).zip(densities) {
+            let sources = vibration.outputs.get(output).map_or(&[][..], |sources| sources);
+            let all_lines = || sources.iter().flat_map(|source| &source.lines);
+            let variance = |rms: f64, of: fn(&SourceMotion) -> f64| {
+                f64::sqrt(rms * rms + sources.iter().map(of).sum::<f64>())
+            };
+            own.rms = variance(own.rms, SourceMotion::variance);
+            own.sample_rms = variance(own.sample_rms, |source| source.sample_variance);
+            own.rms_by_source.extend(sources.iter().map(|source| source.variance().sqrt()));
+            own.window = own.window.map(|window| window.with_lines(all_lines().copied()));
+            let of_noise = |at: f64| {
+                let next = sampled.partition_point(|frequency| *frequency <= at);
+                next.checked_sub(1).map_or(0.0, |last| own.cumulative_rms[last] * own.cumulative_rms[last])
+            };
+            let mut lines: Vec<&SpectralLine> = all_lines().collect();
+            lines.sort_by(|a, b| a.frequency_rad_s.total_cmp(&b.frequency_rad_s));
+            let (mut lines, mut below) = (lines.into_iter().peekable(), 0.0);
+            let cumulative = self.frequency_hz.iter().map(|frequency| {
+                while let Some(line) = lines.next_if(|line| line.frequency_rad_s <= TAU * frequency) {
+                    below += line.mean_square();
+                }
+                f64::sqrt(of_noise(*frequency) + below)
+            });
+            own.cumulative_rms = cumulative.collect();
+            density.by_source.extend(sources.iter().map(|source| source.density.clone().unwrap_or_default()));
+            density.by_source.iter_mut().for_each(|list| list.resize(self.frequency_hz.len(), 0.0));
+            let at = |place: usize| density.by_source.iter().map(|list| list[place]).sum();
+            own.density = (0..self.frequency_hz.len()).map(at).collect();
+            own.density_by_source = density.by_source;
+        }
     }
 
     /// Computes the noise of some outputs, with their indices over windows if there is a window.
