@@ -1,13 +1,16 @@
-"""Reference of tests/broadband.rs: the bench of optics.py under broadband forces on its wheel unit, in a sampled loop.
+"""Reference of tests/machines.rs: the bench of optics.py under broadband forces and lines on its wheel unit, in a sampled loop.
 
 White noise through the filters of the density's corners, the free body without its translation, and a law on the hub's rotation
 whose torque is held over a sample: covariances by Van Loan and a discrete Lyapunov equation, over time by quadrature. The windows are
 those that begin at any time: a mean over their starts. pip install numpy scipy
 """
 
+from functools import cache
+
 import numpy as np
 from optics import HUB, bench
 from scipy.linalg import expm, solve_discrete_lyapunov
+from scipy.optimize import minimize_scalar
 
 LOWER, UPPER = 2 * np.pi * 5.0, 2 * np.pi * 120.0
 DENSITY = 1e-6
@@ -106,8 +109,84 @@ def variance_of_load():
     return SHAPED @ solve_discrete_lyapunov(flow, flow @ both[:4, 4:]) @ SHAPED
 
 
+@cache
+def body():
+    """The body without filters: its rates, its torques, the line of sight, and the columns of its loads."""
+    m, _, _, loads, _ = bench()
+    a, _, torque, sight = system()
+    across = m[3:, :3] @ np.linalg.inv(m[:3, :3])
+    inverse = np.linalg.inv(m[3:, 3:] - across @ m[:3, 3:])
+    columns = np.vstack([np.zeros((6, 6)), inverse @ (loads[3:] - across @ loads[:3])])
+    return a[:12, :12], torque[:12], sight[:, :12], columns
+
+
+@cache
+def flow_of_body(time):
+    """The flow of the body over a time, and the effect of constant torques."""
+    a, torque, _, _ = body()
+    flow, _, held = over(a, np.zeros((12, 1)), torque, time)
+    return flow, held
+
+
+def line(period, w, load):
+    """The complex amplitude of the line of sight about x and y at w, and its mean square, under a force and a torque cos(w t)."""
+    a, _, sight, columns = body()
+    column = columns @ load
+    gain = np.hstack([HUB * BANDWIDTH**2, np.zeros((3, 3)), 1.4 * BANDWIDTH * HUB, np.zeros((3, 3))])
+    own = np.linalg.solve(1j * w * np.eye(12) - a, column)
+
+    def after(start, time):
+        flow, held = flow_of_body(time)
+        return flow @ (start - own) + own * np.exp(1j * w * time) - held @ (gain @ start)
+
+    def closed(time):
+        flow, held = flow_of_body(time)
+        return flow - held @ gain
+
+    turn = np.exp(1j * w * period)
+    start = np.linalg.solve(turn * np.eye(12) - closed(period), after(np.zeros(12, complex), period))
+    at, weights = np.polynomial.legendre.leggauss(24)
+    amplitude, square = np.zeros(2, complex), np.zeros(2)
+    for place, weight in zip(0.5 * (at + 1) * period, 0.5 * weights, strict=True):
+        value = sight @ after(start, place)
+        amplitude += weight * value * np.exp(-1j * w * place)
+        square += weight * np.abs(value) ** 2 / 2
+    return amplitude, square
+
+
+def cooler(period, f):
+    """The mean squares of the line of sight under a cooler of two harmonics, and its peaks."""
+    first, one = line(period, 2 * np.pi * f, np.array([0.01, 0, 0.02, 0, 0, 0]))
+    second, other = line(period, 4 * np.pi * f, np.array([0, 0.003, 0, 2e-4, 0, 0]))
+    angles = np.linspace(0, 2 * np.pi, 20_001)
+    waves = np.outer(first, np.exp(1j * angles)) + np.outer(second * np.exp(1j), np.exp(2j * angles))
+    return one + other, np.abs(waves.real).max(axis=1)
+
+
+def worst(period, low, high):
+    """The worst frequency of the cooler (Hz) for each axis, with the rms and the peak there."""
+    grid = np.linspace(low, high, 601)
+    found = []
+    for about in range(2):
+        sizes = [cooler(period, f)[0][about] for f in grid]
+        best = int(np.argmax(sizes))
+        ends = grid[max(best - 1, 0)], grid[min(best + 1, 600)]
+        f = minimize_scalar(
+            lambda f, about=about: -cooler(period, f)[0][about] * 1e12,
+            bounds=ends,
+            method="bounded",
+            options={"xatol": 1e-9},
+        ).x
+        square, peak = cooler(period, f)
+        found.append((f, np.sqrt(square[about]), peak[about]))
+    return found
+
+
 if __name__ == "__main__":
     np.set_printoptions(precision=12)
     print("variance of the load", variance_of_load())
     for period in (0.001, 0.01):
         print(period, "s: at samples, over time, means over 20 ms", deviations(period, 0.02))
+    square, peak = cooler(0.01, 51.0)
+    print("cooler at 51 Hz:", np.sqrt(square), peak)
+    print("worst of 51 Hz within 10 %:", worst(0.01, 45.9, 56.1))

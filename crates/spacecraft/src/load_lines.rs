@@ -50,7 +50,7 @@ pub struct LoadHarmonic {
 }
 
 fn one() -> Positive {
-    Positive::new(1.0).unwrap_or_default()
+    Positive::ONE
 }
 
 impl LoadHarmonic {

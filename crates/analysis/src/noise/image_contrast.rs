@@ -9,6 +9,8 @@
 use std::f64::consts::PI;
 
 use flexsc_numerics::quadrature::nodes;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::lines::SpectralLine;
 use super::noisy_loop::NoisyLoop;
@@ -106,6 +108,39 @@ impl ImageBlur {
     }
 }
 
+/// Factors of an image's contrast at the Nyquist frequency of its pixels besides that of the motion in `mtf`.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(extend("x-dict" = true))]
+pub struct ImageFactors {
+    /// Spatial frequency (cycles/rad).
+    pub spatial_frequency: f64,
+    /// Contrast of the mean over a pixel.
+    pub detector: f64,
+    /// Contrast of a circular aperture without a central obscuration, if its diffraction is given.
+    pub diffraction: Option<f64>,
+    /// Contrast under a steady rate over the exposure, if one is given: negative where light and dark have changed places.
+    pub smear: Option<f64>,
+    /// Product of these.
+    pub product: f64,
+}
+
+impl ImageFactors {
+    /// Returns the factors of pixels of an angle (rad), of an aperture with this wavelength over its diameter (rad), and of an angle by
+    /// which the image moves during an exposure (rad).
+    pub fn new(pixel: f64, diffraction: Option<f64>, smear: Option<f64>) -> Self {
+        let spatial_frequency = 0.5 / pixel;
+        let mean_over = |angle: f64| j0(PI * spatial_frequency * angle);
+        let aperture = |angle: f64| {
+            let x = spatial_frequency * angle;
+            if x < 1.0 { 2.0 / PI * (libm::acos(x) - x * f64::sqrt(1.0 - x * x)) } else { 0.0 }
+        };
+        let (detector, diffraction, smear) =
+            (mean_over(pixel), diffraction.map(aperture), smear.map(mean_over));
+        let product = detector * diffraction.unwrap_or(1.0) * smear.unwrap_or(1.0);
+        Self { spatial_frequency, detector, diffraction, smear, product }
+    }
+}
+
 /// Returns the square by which the amplitude of a sine about its mean over an exposure (s) exceeds its own, at a time from the middle.
 fn about_mean_square(line: &SpectralLine, length: f64, time: f64) -> f64 {
     let mean = j0(0.5 * line.frequency_rad_s * length);
@@ -187,5 +222,17 @@ mod tests {
         close(blur.contrast(FREQUENCY, &[line(37.0)]), 0.959_708_713_158_169_7, 1e-14);
         let long = ImageBlur::long(0.09e-12);
         close(long.contrast(FREQUENCY, &[line(37.0)]), 0.574_989_735_754_48, 1e-13);
+    }
+
+    /// Numbers by mpmath: sinc(1/2), the overlap of two circles half a diameter apart, and sinc(1.5), which is negative.
+    #[test]
+    fn detector_aperture_and_smear_have_factors() {
+        let factors = ImageFactors::new(2e-6, Some(2e-6), Some(6e-6));
+        assert_eq!(factors.spatial_frequency, FREQUENCY);
+        close(factors.detector, 0.636_619_772_367_581_3, 1e-15);
+        close(factors.diffraction.expect("given"), 0.391_002_218_955_771_8, 1e-15);
+        close(factors.smear.expect("given"), -0.212_206_590_789_193_8, 1e-15);
+        close(factors.product, -0.052_822_410_175_172_27, 1e-15);
+        assert_eq!(ImageFactors::new(1e-6, Some(3e-6), None).product, 0.0);
     }
 }

@@ -42,12 +42,12 @@ mod window_rms;
 mod windows;
 
 pub use density::{OutputDensity, cumulative_rms};
-pub use image_contrast::ImageBlur;
+pub use image_contrast::{ImageBlur, ImageFactors};
 pub use imbalance::{WheelImbalance, WheelLines, WheelSpectrum};
 pub use lines::{LineLoop, OutputLines, SineLoad, SpectralLine, TurningMotion};
 pub use noisy_loop::{NoiseError, NoisyLoop};
 pub use output_samples::OutputSamples;
-pub use report::{NoiseReport, NoiseRequest, OutputNoise};
+pub use report::{MachineLines, NoiseReport, NoiseRequest, OutputNoise};
 pub use sample_times::{SamplePlace, SampleSets, SampleTimes};
 pub use vibration::{SourceMotion, Vibration, WorstTone};
 pub use welch::NarrowestPeak;

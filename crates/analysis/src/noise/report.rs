@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::density::cumulative_rms;
-use super::image_contrast::ImageBlur;
+use super::image_contrast::{ImageBlur, ImageFactors};
 use super::imbalance::{WheelImbalance, WheelSpectrum};
 use super::lines::{LineLoop, SpectralLine};
 use super::noisy_loop::{NoiseError, NoisyLoop};
@@ -34,8 +34,28 @@ pub struct NoiseRequest {
     /// Angle of a pixel (rad), at whose Nyquist frequency the contrast of the image is wanted: over an exposure as long as the
     /// window, or without a window over one without end.
     pub pixel: Option<f64>,
+    /// Steady rate of the image (rad/s) during an exposure as long as the window, for the factor of its smear.
+    pub smear: Option<f64>,
+    /// Wavelength over the diameter of a circular aperture (rad), for the factor of its diffraction.
+    pub diffraction: Option<f64>,
     /// Speeds of the wheels (rad/s) for the lines of their imbalance; none for steps up to their largest and the peaks between.
     pub speeds: Option<Vec<f64>>,
+}
+
+impl NoiseRequest {
+    /// Checks what is asked of an image.
+    fn check_image(&self) -> Result<(), &'static str> {
+        let is_angle = |value: f64| value.is_finite() && value >= 0.0;
+        match (self.smear, self.diffraction) {
+            (Some(_), _) if self.window.is_none() || self.pixel.is_none() => {
+                Err("smear needs a window, the exposure, and a pixel")
+            }
+            (_, Some(_)) if self.pixel.is_none() => Err("diffraction needs a pixel"),
+            (Some(rate), _) if !is_angle(rate) => Err("smear must be a rate from 0 on"),
+            (_, Some(angle)) if !is_angle(angle) => Err("diffraction must be an angle from 0 on"),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Noise of some outputs of a loop.
@@ -57,6 +77,9 @@ pub struct NoiseReport {
     /// Noise of each output.
     #[schemars(extend("x-key" = "output"))]
     pub outputs: Vec<OutputNoise>,
+    /// Further factors of the contrast, if a pixel is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub image: Option<ImageFactors>,
     /// Lines of the imbalance of the wheels, if they have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Json>", extend("x-type" = "WheelSpectrum | None"))]
@@ -87,9 +110,27 @@ pub struct OutputNoise {
     /// Indices over windows, if a window is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<WindowRms>,
+    /// Lines of machines, each at its worst frequency for the output; none without such machines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-key" = "source"))]
+    pub machines: Option<Vec<MachineLines>>,
     /// Modulation transfer of the noise at the Nyquist frequency of the pixels, if a pixel is given and the output is an angle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mtf: Option<f64>,
+}
+
+/// Lines of a machine at its worst frequency for an output, in the unit of the output.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(extend("x-dict" = true))]
+pub struct MachineLines {
+    /// Key of the machine.
+    pub source: String,
+    /// Frequency of the machine in its tolerance at which the rms, within windows if there are any, is largest (rad/s).
+    pub frequency_rad_s: f64,
+    /// Rms of all lines.
+    pub rms: f64,
+    /// Largest deviation over time, without what sampling makes of the lines.
+    pub peak: f64,
 }
 
 impl NoiseReport {
@@ -99,6 +140,7 @@ impl NoiseReport {
     /// See [`NoisyLoop::from_scenario`]; a loop without noise, and a request for an output, a window or speeds that there
     /// are not.
     pub fn from_scenario(scenario: &Scenario, request: &NoiseRequest) -> Result<Self, NoiseError> {
+        request.check_image().map_err(|why| NoiseError::Request(why.to_owned()))?;
         let noisy = NoisyLoop::from_scenario(scenario)?;
         let outputs = chosen(&noisy, &request.signals)?;
         let lines = LineLoop::from_scenario(scenario)?;
@@ -120,6 +162,8 @@ impl NoiseReport {
         }
         if let Some(pixel) = request.pixel {
             report.add_contrast(&noisy, (&outputs, &vibration), pixel).map_err(NoiseError::Request)?;
+            let smear = request.smear.zip(request.window).map(|(rate, window)| rate * window.length);
+            report.image = Some(ImageFactors::new(pixel, request.diffraction, smear));
         }
         Ok(report)
     }
@@ -187,6 +231,18 @@ impl NoiseReport {
             own.sample_rms = variance(own.sample_rms, |source| source.sample_variance);
             own.rms_by_source.extend(sources.iter().map(|source| source.variance().sqrt()));
             own.window = own.window.map(|window| window.with_lines(all_lines().copied()));
+            let machine = |(source, motion): (&String, &SourceMotion)| {
+                let worst = motion.worst?;
+                Some(MachineLines {
+                    source: source.clone(),
+                    frequency_rad_s: worst.frequency,
+                    rms: motion.variance().sqrt(),
+                    peak: worst.peak,
+                })
+            };
+            let machines: Vec<MachineLines> =
+                vibration.sources.iter().zip(sources).filter_map(machine).collect();
+            own.machines = Some(machines).filter(|machines| !machines.is_empty());
             let of_noise = |at: f64| {
                 let next = sampled.partition_point(|frequency| *frequency <= at);
                 next.checked_sub(1).map_or(0.0, |last| own.cumulative_rms[last] * own.cumulative_rms[last])
@@ -231,6 +287,7 @@ impl NoiseReport {
                 density: density.total,
                 density_by_source: density.by_source,
                 window: window.map(|window| WindowRms::new(noisy, outputs[place], window)).transpose()?,
+                machines: None,
                 mtf: None,
             });
         }
@@ -242,6 +299,7 @@ impl NoiseReport {
             sources: noisy.sources.clone(),
             frequency_hz,
             outputs: found,
+            image: None,
             wheels: None,
         })
     }

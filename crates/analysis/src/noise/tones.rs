@@ -16,7 +16,7 @@ use super::transfer::LoopTransfer;
 use super::vibration::{Measure, SourceMotion, WorstTone};
 use crate::margins::frequency_response::{modulus, unit_circle};
 
-/// Equal steps in the range of a frequency, and resonances that are examined beside.
+/// Equal steps in the range of a frequency, and resonances of each harmonic that are examined beside.
 const STEPS: usize = 32;
 const MOST_RESONANCES: usize = 200;
 /// Number of the highest peaks that are refined.
@@ -68,10 +68,11 @@ impl ToneLoop<'_> {
             return vec![from];
         }
         let lines = self.source.lines;
-        let multiples = || lines.harmonics.iter().map(|harmonic| lines.multiple(harmonic));
-        let resonances = self.transfer.resonances.iter();
-        let met = resonances.flat_map(|[frequency, _]| multiples().map(move |multiple| frequency / multiple));
-        let met = met.filter(|frequency| (from..to).contains(frequency)).take(MOST_RESONANCES);
+        let met = lines.harmonics.iter().flat_map(|harmonic| {
+            let multiple = lines.multiple(harmonic);
+            let met = self.transfer.met([from * multiple, to * multiple]);
+            met.into_iter().take(MOST_RESONANCES).map(move |frequency| frequency / multiple)
+        });
         let step = |step| from + (to - from) * step as f64 / STEPS as f64;
         let mut all: Vec<f64> = (0..=STEPS).map(step).chain(met).collect();
         all.sort_by(f64::total_cmp);

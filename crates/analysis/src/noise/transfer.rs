@@ -4,6 +4,7 @@
 //! (j w_n - A)^-1 (B u_n + b) there, with b only at w itself. The torques follow from the samples of the body's own response.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::reader_units::number;
@@ -33,8 +34,11 @@ pub struct LoopTransfer<'a> {
     body: FrequencyResponse,
     /// Flows of the body over the pieces of a period, by their lengths (fs).
     flows: BTreeMap<i64, (DMatrix<f64>, DMatrix<f64>)>,
-    /// Resonances: frequency and half width (rad/s).
+    /// Resonances: frequency and half width (rad/s), of the body and then of the loop.
     pub resonances: Vec<[f64; 2]>,
+    of_body: usize,
+    /// Distance of the frequencies that have the same aliases (rad/s).
+    turn: f64,
 }
 
 /// Lines of each output under a unit of one load.
@@ -67,7 +71,9 @@ impl<'a> LoopTransfer<'a> {
             let (angle, size) = (libm::atan2(pole.im, pole.re), modulus(pole).max(f64::MIN_POSITIVE));
             [angle.abs() / opened.period, libm::log(size).abs() / opened.period]
         });
+        let is_above = |[frequency, _]: &[f64; 2]| *frequency > 0.0;
         let of_body = eigenvalues(a).unwrap_or_default().into_iter().map(|pole| [pole.im.abs(), pole.re.abs()]);
+        let of_body: Vec<[f64; 2]> = of_body.filter(is_above).collect();
         let transfer = TransferMatrices {
             a: a.clone(),
             b: DMatrix::zeros(a.nrows(), 0),
@@ -80,8 +86,19 @@ impl<'a> LoopTransfer<'a> {
             loads: DMatrix::from_columns(loads),
             body: FrequencyResponse::new(&transfer),
             flows: pieces.iter().map(flow).collect(),
-            resonances: of_body.chain(of_loop).filter(|[frequency, _]| *frequency > 0.0).collect(),
+            of_body: of_body.len(),
+            resonances: of_body.into_iter().chain(of_loop.filter(is_above)).collect(),
+            turn: TAU / opened.period,
         })
+    }
+
+    /// Returns frequencies between two (rad/s) at which a load meets a resonance: of the body, of the loop, or of the loop as an alias.
+    pub fn met(&self, [from, to]: [f64; 2]) -> Vec<f64> {
+        let (body, looped) = self.resonances.split_at(self.of_body);
+        let folds = || (0..=libm::ceil(to / self.turn) as usize).map(|fold| fold as f64 * self.turn);
+        let aliases = looped.iter().flat_map(|[own, _]| folds().flat_map(move |fold| [fold - own, fold + own]));
+        let all = body.iter().map(|[own, _]| *own).chain(aliases);
+        all.filter(|frequency| (from..=to).contains(frequency)).collect()
     }
 
     /// Returns the response to each load at a frequency (rad/s).
@@ -98,7 +115,7 @@ impl<'a> LoopTransfer<'a> {
         let order = self.loads.nrows();
         let columns = self.loads.map(|entry| Complex::new(entry, 0.0));
         let undamped = || {
-            let hertz = number(frequency / std::f64::consts::TAU);
+            let hertz = number(frequency / TAU);
             ConfigError::new("body", format!("has an undamped motion at {hertz} Hz, the frequency of a load"))
         };
         let own = self.body.states(Complex::new(0.0, frequency), &columns).ok_or_else(undamped)?;
