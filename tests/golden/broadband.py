@@ -158,19 +158,22 @@ def cooler(period, f):
     """The mean squares of the line of sight under a cooler of two harmonics, and its peaks."""
     first, one = line(period, 2 * np.pi * f, np.array([0.01, 0, 0.02, 0, 0, 0]))
     second, other = line(period, 4 * np.pi * f, np.array([0, 0.003, 0, 2e-4, 0, 0]))
-    angles = np.linspace(0, 2 * np.pi, 20_001)
+    angles = np.linspace(0, 2 * np.pi, 2_001)
     waves = np.outer(first, np.exp(1j * angles)) + np.outer(second * np.exp(1j), np.exp(2j * angles))
     return one + other, np.abs(waves.real).max(axis=1)
 
 
 def worst(period, low, high):
     """The worst frequency of the cooler (Hz) for each axis, with the rms and the peak there."""
-    grid = np.linspace(low, high, 601)
+    # The law has peaks at both sides of multiples of half its sampling rate.
+    near = [k / period / 2 + np.linspace(-0.1, 0.1, 401) for k in range(1, 100)]
+    grid = np.unique(np.concatenate([np.linspace(low, high, 601), *near]))
+    grid = grid[(grid >= low) & (grid <= high)]
     found = []
     for about in range(2):
         sizes = [cooler(period, f)[0][about] for f in grid]
         best = int(np.argmax(sizes))
-        ends = grid[max(best - 1, 0)], grid[min(best + 1, 600)]
+        ends = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
         f = minimize_scalar(
             lambda f, about=about: -cooler(period, f)[0][about] * 1e12,
             bounds=ends,

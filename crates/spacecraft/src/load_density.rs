@@ -9,10 +9,10 @@ use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::shaped_load::STEPS;
-
 /// Twice the damping ratio of the two filters that make the corners.
 pub(crate) const TWICE_DAMPING: f64 = 1.4;
+/// Steps of a run in a period of the upper corner: a load is held for a step, which takes 0.8 % of its density at the corner.
+pub(crate) const STEPS: f64 = 20.0;
 
 /// Stationary Gaussian force and torque at a point, whose components are independent: one-sided densities that are constant between two
 /// corners, or a table over frequency.

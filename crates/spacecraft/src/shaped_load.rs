@@ -9,10 +9,8 @@ use flexsc_numerics::random::Stream;
 use flexsc_numerics::time::Span;
 use nalgebra::{Cholesky, DMatrix, Matrix4, RowVector4, Vector4};
 
-use crate::load_density::{LoadDensity, TWICE_DAMPING};
+use crate::load_density::{LoadDensity, STEPS, TWICE_DAMPING};
 
-/// Steps in a period of the upper corner: a load is held for a step, which takes 0.8 % of its density at the corner.
-pub(crate) const STEPS: f64 = 20.0;
 /// Largest number of doublings until the filters have settled.
 const DOUBLINGS: usize = 60;
 

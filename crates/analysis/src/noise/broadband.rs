@@ -14,8 +14,9 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::lines::{LineLoop, SpectralLine};
+use super::source_motion::SourceMotion;
 use super::transfer::{LoadResponse, LoopTransfer};
-use super::vibration::SourceMotion;
+
 
 /// Lowest frequency, relative to the lowest corner and resonance, and highest, relative to the highest.
 const LOWEST: f64 = 1e-3;
@@ -205,10 +206,11 @@ impl Integral<'_> {
             add(frequency);
             frequency *= APART;
         }
-        for [frequency, width] in resonances {
-            add(*frequency);
+        for [frequency, width] in self.transfer.met(most) {
+            add(frequency);
+            // As an alias, a resonance is as far as its own frequency from others.
             let mut distance = width.max(1e-9 * frequency);
-            while distance < frequency * (1.0 - 1.0 / NEAR) {
+            while distance < f64::min(frequency * (1.0 - 1.0 / NEAR), self.transfer.turn) {
                 add(frequency - distance);
                 add(frequency + distance);
                 distance *= GRADE;

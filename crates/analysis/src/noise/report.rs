@@ -13,8 +13,9 @@ use super::image_contrast::{ImageBlur, ImageFactors};
 use super::imbalance::{WheelImbalance, WheelSpectrum};
 use super::lines::{LineLoop, SpectralLine};
 use super::noisy_loop::{NoiseError, NoisyLoop};
+use super::source_motion::SourceMotion;
 use super::window_rms::WindowRms;
-use super::vibration::{SourceMotion, Vibration};
+use super::vibration::Vibration;
 use super::windows::Window;
 use flexsc_scenario::Scenario;
 

@@ -12,8 +12,8 @@ use nalgebra::{Complex, DVector};
 use rayon::prelude::*;
 
 use super::lines::{LineLoop, SpectralLine};
+use super::source_motion::{Measure, SourceMotion, WorstTone};
 use super::transfer::LoopTransfer;
-use super::vibration::{Measure, SourceMotion, WorstTone};
 use crate::margins::frequency_response::{modulus, unit_circle};
 
 /// Equal steps in the range of a frequency, and resonances of each harmonic that are examined beside.
@@ -70,8 +70,8 @@ impl ToneLoop<'_> {
         let lines = self.source.lines;
         let met = lines.harmonics.iter().flat_map(|harmonic| {
             let multiple = lines.multiple(harmonic);
-            let met = self.transfer.met([from * multiple, to * multiple]);
-            met.into_iter().take(MOST_RESONANCES).map(move |frequency| frequency / multiple)
+            let met = self.transfer.met(to * multiple).into_iter().map(move |[at, _]| at / multiple);
+            met.filter(|at| (from..to).contains(at)).take(MOST_RESONANCES)
         });
         let step = |step| from + (to - from) * step as f64 / STEPS as f64;
         let mut all: Vec<f64> = (0..=STEPS).map(step).chain(met).collect();

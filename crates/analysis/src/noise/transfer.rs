@@ -24,6 +24,11 @@ use crate::open_loop::{BodyMatrices, OpenLoop, TransferMatrices};
 /// that far beside.
 const LEAST_ALIAS: f64 = 1e-4;
 
+/// Distance of two resonances, relative to the half width of the narrower one, below which they are one.
+const APART: f64 = 0.5;
+/// Largest number of aliases of resonances.
+const MOST_FOLDS: usize = 400;
+
 /// Responses of outputs to loads on the states of the body.
 pub struct LoopTransfer<'a> {
     lines: &'a LineLoop<'a>,
@@ -38,7 +43,7 @@ pub struct LoopTransfer<'a> {
     pub resonances: Vec<[f64; 2]>,
     of_body: usize,
     /// Distance of the frequencies that have the same aliases (rad/s).
-    turn: f64,
+    pub turn: f64,
 }
 
 /// Lines of each output under a unit of one load.
@@ -92,13 +97,19 @@ impl<'a> LoopTransfer<'a> {
         })
     }
 
-    /// Returns frequencies between two (rad/s) at which a load meets a resonance: of the body, of the loop, or of the loop as an alias.
-    pub fn met(&self, [from, to]: [f64; 2]) -> Vec<f64> {
+    /// Returns the resonances (frequency, half width, rad/s) that a load up to a frequency meets: of the body, of the loop, and of the loop
+    /// as an alias.
+    pub fn met(&self, highest: f64) -> Vec<[f64; 2]> {
         let (body, looped) = self.resonances.split_at(self.of_body);
-        let folds = || (0..=libm::ceil(to / self.turn) as usize).map(|fold| fold as f64 * self.turn);
-        let aliases = looped.iter().flat_map(|[own, _]| folds().flat_map(move |fold| [fold - own, fold + own]));
-        let all = body.iter().map(|[own, _]| *own).chain(aliases);
-        all.filter(|frequency| (from..=to).contains(frequency)).collect()
+        let mut own: Vec<[f64; 2]> = looped.to_vec();
+        own.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        own.dedup_by(|later, kept| later[0] - kept[0] < APART * kept[1].min(later[1]));
+        let folds = (libm::ceil(highest / self.turn) as usize).min(MOST_FOLDS / own.len().max(1));
+        let aliases = (0..=folds).flat_map(|fold| {
+            let turned = fold as f64 * self.turn;
+            own.iter().flat_map(move |[at, width]| [[turned - at, *width], [turned + at, *width]])
+        });
+        body.iter().copied().chain(aliases).filter(|[at, _]| (0.0..=highest).contains(at) && *at > 0.0).collect()
     }
 
     /// Returns the response to each load at a frequency (rad/s).

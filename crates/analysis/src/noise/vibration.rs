@@ -5,17 +5,14 @@ use std::collections::BTreeMap;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_dynamics::wrench::ForceEffect;
 use flexsc_formats::document::ConfigError;
-use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::inverse::inverse_3x3;
 use nalgebra::{DVector, Matrix3};
 
 use super::broadband::{BroadbandSource, broadband};
 use super::lines::{LineLoop, SpectralLine};
+use super::source_motion::{Measure, SourceMotion};
 use super::tones::{ToneSource, worst_tones};
 use flexsc_scenario::Scenario;
-
-/// Measure of the lines of an output, by its index, that is largest at the worst frequency of a machine.
-pub type Measure<'a> = &'a (dyn Fn(usize, &[SpectralLine]) -> f64 + Sync);
 
 /// Motion of outputs of a loop under the machines of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,36 +23,6 @@ pub struct Vibration {
     pub frequency_hz: Vec<f64>,
     /// Motion of each output under each source, by the index of the output.
     pub outputs: BTreeMap<usize, Vec<SourceMotion>>,
-}
-
-/// Motion of an output under one source.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SourceMotion {
-    /// Lines, whose mean squares add up to the variance over time.
-    pub lines: Vec<SpectralLine>,
-    /// Variance at the samples of the law.
-    pub sample_variance: f64,
-    /// One-sided density of a broadband source (unit² per Hz) at the frequencies, without what sampling makes of it; none of a machine
-    /// with lines.
-    pub density: Option<Vec<f64>>,
-    /// Worst frequency of a machine with lines.
-    pub worst: Option<WorstTone>,
-}
-
-/// Worst frequency of a machine for an output.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct WorstTone {
-    /// Frequency of the machine (rad/s).
-    pub frequency: f64,
-    /// Largest deviation of the output over time, without what sampling makes of the lines.
-    pub peak: f64,
-}
-
-impl SourceMotion {
-    /// Returns the variance over time.
-    pub fn variance(&self) -> f64 {
-        self.lines.iter().map(SpectralLine::mean_square).sum()
-    }
 }
 
 impl Vibration {
@@ -133,13 +100,10 @@ impl<'a> Machines<'a> {
 /// Returns the rates of the states of the body, and of its modes, under a load.
 fn load_column(body: &ThreeAxisModel, load: &ForceEffect) -> DVector<f64> {
     let inverse = inverse_3x3(body.inertia).unwrap_or_else(Matrix3::identity);
-    let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
     let mut column = DVector::zeros(6 + 2 * body.modes.len());
     column.rows_mut(3, 3).copy_from(&(inverse * load.torque));
     for mode in 0..body.modes.len() {
-        let turned = hub.get(mode).copied().unwrap_or_else(Vector::zeros);
-        let own = load.forces.get(mode).copied().unwrap_or(0.0);
-        column[7 + 2 * mode] = turned.dot(&load.torque) + own;
+        column[7 + 2 * mode] = load.forces.get(mode).copied().unwrap_or(0.0);
     }
     column
 }

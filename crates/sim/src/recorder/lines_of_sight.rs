@@ -1,5 +1,6 @@
 //! Lines of sight of a run: nothing in the loop reads them; their samples go to the record.
 
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{LineOfSightAxis, LineOfSightSample, Record, RecordError, Sample};
@@ -48,7 +49,7 @@ impl MountedLine {
             offsets: difference(scenario.study.sensor_points.first()?),
             rotations: difference(hub),
             displacements: body.displacements(&line.point, &Vector::zeros()),
-            optics: (!line.optics.is_empty()).then(|| line.sensitivity(body)),
+            optics: (!line.optics.is_empty()).then(|| of_hub(line.sensitivity(body), body)),
         })
     }
 
@@ -117,6 +118,15 @@ impl LinesOfSight {
         }
         Ok(())
     }
+}
+
+/// Returns a sensitivity to the rotation of the hub, whose attitude a run has, in place of that of the rigid body.
+fn of_hub(mut sight: LineSensitivity, body: &ThreeAxisModel) -> LineSensitivity {
+    let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
+    for (mode, rotation) in sight.modes.iter_mut().zip(hub) {
+        *mode -= sight.rigid * rotation;
+    }
+    sight
 }
 
 /// Returns the rotation vector (rad), perpendicular to both, from a unit vector to another.
