@@ -45,8 +45,7 @@ fn broadband_forces_move_the_line_of_sight_as_covariances_say() {
     ];
     for (period, at_samples, over_time, means) in golden {
         dir.write("bench.toml", bench(period, DENSITY));
-        let command =
-            "spectrum bench.toml --signal line_of_sight0_x,line_of_sight0_y --window 0.02 --json";
+        let command = "spectrum bench.toml --signal line_of_sight0_x,line_of_sight0_y --window 0.02 --json";
         let report = dir.run(command).exits(0).json();
         assert_eq!(report["sources"], serde_json::json!(["disturbance[0].density"]));
         for about in 0..2 {
@@ -154,15 +153,40 @@ fn budgets_have_machines() {
 fn machines_that_do_not_hold_are_refused() {
     let dir = Dir::new();
     for (load, from, to, why) in [
-        (DENSITY, "upper = \"120 Hz\"", "upper = \"2 Hz\"", "`disturbance[0].density.upper` must be above `lower`"),
+        (
+            DENSITY,
+            "upper = \"120 Hz\"",
+            "upper = \"2 Hz\"",
+            "`disturbance[0].density.upper` must be above `lower`",
+        ),
         (DENSITY, ", upper = \"120 Hz\"", "", "`disturbance[0].density.upper` must be given"),
-        (DENSITY, "force = [1e-6, 1e-6, 1e-6]", "force = [0, 0, 0]", "`disturbance[0].density.force` must have a density"),
-        (DENSITY, "lower = ", "table = [[1, 1], [2, 1]], lower = ", "`disturbance[0].density.table` has the densities"),
+        (
+            DENSITY,
+            "force = [1e-6, 1e-6, 1e-6]",
+            "force = [0, 0, 0]",
+            "`disturbance[0].density.force` must have a density",
+        ),
+        (
+            DENSITY,
+            "lower = ",
+            "table = [[1, 1], [2, 1]], lower = ",
+            "`disturbance[0].density.table` has the densities",
+        ),
         (DENSITY, "density", "force = [1, 0, 0]\ndensity", "`disturbance[0].density` must be alone"),
         (DENSITY, "rotor", "stator", "`disturbance[0].point`"),
         (COOLER, "order = 1", "order = 0", "order`: must be a positive number"),
-        (COOLER, "frequency", "tolerance = 0.9\nfrequency", "`disturbance[0].lines.tolerance` must be at most 0.5"),
-        (COOLER, "order = 2, force = [0, 0.003, 0], torque = [2e-4, 0, 0]", "order = 2", "`disturbance[0].lines.harmonics[1]` must have"),
+        (
+            COOLER,
+            "frequency",
+            "tolerance = 0.9\nfrequency",
+            "`disturbance[0].lines.tolerance` must be at most 0.5",
+        ),
+        (
+            COOLER,
+            "order = 2, force = [0, 0.003, 0], torque = [2e-4, 0, 0]",
+            "order = 2",
+            "`disturbance[0].lines.harmonics[1]` must have",
+        ),
     ] {
         assert!(load.contains(from), "{from}");
         dir.write("bench.toml", bench(0.01, &load.replace(from, to)));
@@ -174,7 +198,17 @@ fn machines_that_do_not_hold_are_refused() {
     dir.write("bench.toml", bench(0.01, &text));
     dir.write("test.csv", "frequency,force\n5,1e-7\n40,1e-6\n200,1e-8\n");
     dir.run("spectrum bench.toml").exits(0).says(&["disturbance[0].density"]);
-    dir.run("simulate bench.toml").exits(1).says(&["`disturbance[0].density.table` has no run: `spectrum`"]);
+    let refused = dir.run("simulate bench.toml").exits(2);
+    refused.says(&["disturbance[0].density.table", "has no run: `spectrum` has it"]);
+    assert!(!dir.has("bench.mcap"));
+    let open = bench(0.01, DENSITY);
+    let law = &open[open.find("[law").expect("a law")..open.find("[actuator").expect("an actuator")];
+    let actuators =
+        &open[open.find("[actuator").expect("actuators")..open.find("[[disturbance").expect("a load")];
+    dir.write("open.toml", open.replace(law, "[law.open]\n").replace(actuators, ""));
+    dir.run("spectrum open.toml").exits(2).says(&["law.open", "answers a slow force with 1/f²"]);
     dir.write("test.csv", "frequency,force\n5,1e-7\n4,1e-6\n");
-    dir.run("spectrum bench.toml").exits(2).says(&["test.csv", "line 3: must have increasing positive frequencies"]);
+    dir.run("spectrum bench.toml")
+        .exits(2)
+        .says(&["test.csv", "line 3: must have increasing positive frequencies"]);
 }

@@ -117,7 +117,8 @@ mod tests {
 
     #[test]
     fn both_rules_of_kronrod_are_exact_to_their_degrees() {
-        let sum = |degree: i32, which: usize| kronrod().map(|node| node[which] * node[0].powi(degree)).sum::<f64>();
+        let sum =
+            |degree: i32, which: usize| kronrod().map(|node| node[which] * node[0].powi(degree)).sum::<f64>();
         for half in 0..=11 {
             let exact = 2.0 / f64::from(2 * half + 1);
             assert!((sum(2 * half, 1) - exact).abs() < 1e-15, "{half}");

@@ -3,6 +3,7 @@
 use flexsc_control::custom::PartError;
 use flexsc_numerics::time::Instant;
 use flexsc_record::RecordError;
+use flexsc_spacecraft::load_density::TABLE_HAS_NO_RUN;
 use thiserror::Error;
 
 /// Error that ends a simulation.
@@ -76,10 +77,7 @@ pub enum SimulationError {
         count: u32,
     },
     /// A broadband load over frequency has no filters that a run could simulate.
-    #[error(
-        "`disturbance[{index}].density.table` has no run: `spectrum` and the linear loop have it; give `force` or `torque` with the \
-         corners `lower` and `upper` for runs"
-    )]
+    #[error("`disturbance[{index}].density.table` {TABLE_HAS_NO_RUN}")]
     DensityTable {
         /// Index of the disturbance.
         index: usize,

@@ -159,7 +159,12 @@ impl Disturbance {
         let machine = self.density.as_ref().map(|density| ("density", density.validate()));
         let machine = machine.or_else(|| Some(("lines", self.lines.as_ref()?.validate())));
         if let Some((key, fault)) = machine {
-            let given = [self.force.is_some(), self.table.is_some(), self.pulse.is_some(), self.lines.is_some() && key != "lines"];
+            let given = [
+                self.force.is_some(),
+                self.table.is_some(),
+                self.pulse.is_some(),
+                self.lines.is_some() && key != "lines",
+            ];
             if given.contains(&true) || noisy || self.torque.get() != 0.0 || !self.sines.is_empty() {
                 return refused(key, "must be alone: give other loads as a `[[disturbance]]` of their own");
             }
@@ -193,7 +198,11 @@ impl Disturbance {
     pub fn validate_one_axis(&self) -> Option<ConfigError> {
         if self.is_force() || self.point.is_some() {
             let why = "acts on a body with three axes: use a `torque` for a body with one angle";
-            let keys = [("force", self.force.is_some()), ("density", self.density.is_some()), ("lines", self.lines.is_some())];
+            let keys = [
+                ("force", self.force.is_some()),
+                ("density", self.density.is_some()),
+                ("lines", self.lines.is_some()),
+            ];
             let key = keys.iter().find(|(_, is_given)| *is_given).map_or("table", |(key, _)| key);
             return Some(ConfigError::new(key, why));
         }

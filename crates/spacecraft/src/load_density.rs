@@ -11,8 +11,11 @@ use serde::{Deserialize, Serialize};
 
 /// Twice the damping ratio of the two filters that make the corners.
 pub(crate) const TWICE_DAMPING: f64 = 1.4;
-/// Steps of a run in a period of the upper corner: a load is held for a step, which takes 0.8 % of its density at the corner.
+/// Steps of a run in a period of the upper corner: the mean over a step is held for it, which takes 1.6 % of the density at the corner.
 pub(crate) const STEPS: f64 = 20.0;
+
+/// Reason why a table is refused in runs.
+pub const TABLE_HAS_NO_RUN: &str = "has no run: `spectrum` has it; for runs give `force` or `torque` between the corners `lower` and `upper`";
 
 /// Stationary Gaussian force and torque at a point, whose components are independent: one-sided densities that are constant between two
 /// corners, or a table over frequency.

@@ -88,7 +88,8 @@ impl LoadLines {
             return Some(ConfigError::new("harmonics", why));
         }
         if self.tolerance.get() > WIDEST {
-            let why = format!("must be at most {WIDEST}, a part of the frequency, got {}", self.tolerance.get());
+            let why =
+                format!("must be at most {WIDEST}, a part of the frequency, got {}", self.tolerance.get());
             return Some(ConfigError::new("tolerance", why));
         }
         let idle = self.harmonics.iter().position(|harmonic| harmonic.amplitudes() == [0.0; 6]);

@@ -17,7 +17,6 @@ use super::lines::{LineLoop, SpectralLine};
 use super::source_motion::SourceMotion;
 use super::transfer::{LoadResponse, LoopTransfer};
 
-
 /// Lowest frequency, relative to the lowest corner and resonance, and highest, relative to the highest.
 const LOWEST: f64 = 1e-3;
 const HIGHEST: f64 = 30.0;
@@ -64,8 +63,10 @@ pub(super) fn broadband(
     if sources.is_empty() {
         return Ok((Vec::new(), vec![Vec::new(); outputs.len()]));
     }
-    let integral = Integral { transfer: LoopTransfer::new(lines, outputs, loads)?, sources, outputs: outputs.len() };
-    let mut nodes: Vec<Node> = integral.intervals()?.into_iter().flat_map(|interval| interval.nodes).collect();
+    let integral =
+        Integral { transfer: LoopTransfer::new(lines, outputs, loads)?, sources, outputs: outputs.len() };
+    let mut nodes: Vec<Node> =
+        integral.intervals()?.into_iter().flat_map(|interval| interval.nodes).collect();
     nodes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     let motion = |output: usize, source: &BroadbandSource<'_>| {
         let mut found = SourceMotion::default();
@@ -206,15 +207,23 @@ impl Integral<'_> {
             add(frequency);
             frequency *= APART;
         }
-        for [frequency, width] in self.transfer.met(most) {
+        let mut around = |frequency: f64, width: f64, reach: f64| {
             add(frequency);
-            // As an alias, a resonance is as far as its own frequency from others.
             let mut distance = width.max(1e-9 * frequency);
-            while distance < f64::min(frequency * (1.0 - 1.0 / NEAR), self.transfer.turn) {
+            while distance < reach {
                 add(frequency - distance);
                 add(frequency + distance);
                 distance *= GRADE;
             }
+        };
+        let (direct, aliases) = self.transfer.met(most);
+        for [frequency, width] in direct {
+            around(frequency, width, frequency * (1.0 - 1.0 / NEAR));
+        }
+        for ([frequency, width], fold) in aliases {
+            let own = (frequency - fold).abs();
+            around(frequency, width, own);
+            around(fold, GRADE * own, self.transfer.turn);
         }
         let mut found: Vec<f64> = breaks.into_values().collect();
         found.dedup_by(|later, kept| *later - *kept < 1e-9 * *later);

@@ -63,7 +63,8 @@ impl ImageBlur {
         let moments = noisy.moments(output, [0.0, noisy.period]);
         let variance = |time: f64| {
             let about_mean = Functional::mean(0.0, length, -1.0).with_point(time + 0.5 * length);
-            let bands = gaussian.iter().map(|line| line.mean_square() * about_mean_square(line, length, time));
+            let bands =
+                gaussian.iter().map(|line| line.mean_square() * about_mean_square(line, length, time));
             noisy.functional_variances(output, &about_mean, &moments).iter().sum::<f64>() + bands.sum::<f64>()
         };
         Ok(Self::over_exposure(length, fastest, variance))
@@ -71,7 +72,11 @@ impl ImageBlur {
 
     /// Returns the blur of an exposure without end by a variance (rad²).
     pub fn long(variance: f64) -> Self {
-        Self { exposure: None, instants: vec![BlurInstant { time: 0.0, part: 1.0, variance }], lines: Vec::new() }
+        Self {
+            exposure: None,
+            instants: vec![BlurInstant { time: 0.0, part: 1.0, variance }],
+            lines: Vec::new(),
+        }
     }
 
     /// Returns the blur of an exposure (s) by a variance (rad²) over the time from its middle, and by motion up to a frequency

@@ -8,12 +8,12 @@ use nalgebra::DMatrix;
 
 use super::schedule::{Draws, Schedule};
 use super::source::{NoiseEntry, NoiseSource};
-use crate::open_loop::{BodyMatrices, LoopParts};
 use crate::open_loop::attitude_rows::{AttitudeRows, SensorErrors, seconds};
 use crate::open_loop::block_matrices::stacked;
 use crate::open_loop::multi_rate::read_states;
 use crate::open_loop::sampling::held;
 use crate::open_loop::uniform_rate::Controller;
+use crate::open_loop::{BodyMatrices, LoopParts};
 
 /// Part of a period in which the torques are constant.
 #[derive(Clone, Debug)]

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use flexsc_control::law::LawKind;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::reader_units::ReaderUnits;
 use schemars::JsonSchema;
@@ -14,8 +15,8 @@ use super::imbalance::{WheelImbalance, WheelSpectrum};
 use super::lines::{LineLoop, SpectralLine};
 use super::noisy_loop::{NoiseError, NoisyLoop};
 use super::source_motion::SourceMotion;
-use super::window_rms::WindowRms;
 use super::vibration::Vibration;
+use super::window_rms::WindowRms;
 use super::windows::Window;
 use flexsc_scenario::Scenario;
 
@@ -142,6 +143,12 @@ impl NoiseReport {
     /// are not.
     pub fn from_scenario(scenario: &Scenario, request: &NoiseRequest) -> Result<Self, NoiseError> {
         request.check_image().map_err(|why| NoiseError::Request(why.to_owned()))?;
+        let is_open = matches!(scenario.law.about(0), LawKind::Open(_));
+        if is_open && scenario.disturbance.iter().any(|own| own.density.is_some()) {
+            let why = "leaves the body free, which answers a slow force with 1/f²: what a `density` does below its corner or its table decides \
+                       how far it drifts; give a law that holds the body";
+            return Err(NoiseError::Key(ConfigError::new("law.open", why)));
+        }
         let noisy = NoisyLoop::from_scenario(scenario)?;
         let outputs = chosen(&noisy, &request.signals)?;
         let lines = LineLoop::from_scenario(scenario)?;

@@ -57,7 +57,9 @@ pub(super) fn worst_tones(
     let tones = ToneLoop { source, transfer, outputs: outputs.len() };
     let frequencies = tones.frequencies();
     let examined = frequencies.par_iter().map(|at| tones.at(*at)).collect::<Result<Vec<_>, _>>()?;
-    (0..outputs.len()).map(|place| tones.worst(&examined, place, &|own| measure(outputs[place], own))).collect()
+    (0..outputs.len())
+        .map(|place| tones.worst(&examined, place, &|own| measure(outputs[place], own)))
+        .collect()
 }
 
 impl ToneLoop<'_> {
@@ -70,7 +72,9 @@ impl ToneLoop<'_> {
         let lines = self.source.lines;
         let met = lines.harmonics.iter().flat_map(|harmonic| {
             let multiple = lines.multiple(harmonic);
-            let met = self.transfer.met(to * multiple).into_iter().map(move |[at, _]| at / multiple);
+            let (direct, aliases) = self.transfer.met(to * multiple);
+            let all = direct.into_iter().chain(aliases.into_iter().map(|(alias, _)| alias));
+            let met = all.map(move |[at, _]| at / multiple);
             met.filter(|at| (from..to).contains(at)).take(MOST_RESONANCES)
         });
         let step = |step| from + (to - from) * step as f64 / STEPS as f64;
@@ -158,7 +162,9 @@ fn peak(harmonics: &[(f64, Complex<f64>)]) -> f64 {
     let most = harmonics.last().map_or(1.0, |harmonic| harmonic.0 / least);
     let count = libm::ceil(INSTANTS * most) as usize;
     let value = |angle: f64| {
-        let all = harmonics.iter().map(|(multiple, amplitude)| (unit_circle(multiple / least * angle) * amplitude).re);
+        let all = harmonics
+            .iter()
+            .map(|(multiple, amplitude)| (unit_circle(multiple / least * angle) * amplitude).re);
         all.sum::<f64>().abs()
     };
     let step = TAU / count as f64;

@@ -22,10 +22,12 @@ use crate::open_loop::{BodyMatrices, OpenLoop, TransferMatrices};
 
 /// Least distance of an alias from zero frequency, times the period, at which its response is computed: below it, one is taken
 /// that far beside.
-const LEAST_ALIAS: f64 = 1e-4;
+const LEAST_ALIAS: f64 = 1e-6;
 
 /// Distance of two resonances, relative to the half width of the narrower one, below which they are one.
 const APART: f64 = 0.5;
+/// Difference from the frequency of a mode as an alias, relative, below which a resonance of the loop is that mode.
+const OF_MODE: f64 = 0.1;
 /// Largest number of aliases of resonances.
 const MOST_FOLDS: usize = 400;
 
@@ -77,7 +79,8 @@ impl<'a> LoopTransfer<'a> {
             [angle.abs() / opened.period, libm::log(size).abs() / opened.period]
         });
         let is_above = |[frequency, _]: &[f64; 2]| *frequency > 0.0;
-        let of_body = eigenvalues(a).unwrap_or_default().into_iter().map(|pole| [pole.im.abs(), pole.re.abs()]);
+        let of_body =
+            eigenvalues(a).unwrap_or_default().into_iter().map(|pole| [pole.im.abs(), pole.re.abs()]);
         let of_body: Vec<[f64; 2]> = of_body.filter(is_above).collect();
         let transfer = TransferMatrices {
             a: a.clone(),
@@ -97,19 +100,26 @@ impl<'a> LoopTransfer<'a> {
         })
     }
 
-    /// Returns the resonances (frequency, half width, rad/s) that a load up to a frequency meets: of the body, of the loop, and of the loop
-    /// as an alias.
-    pub fn met(&self, highest: f64) -> Vec<[f64; 2]> {
+    /// Returns the resonances (frequency, half width, rad/s) that a load up to a frequency meets: of body and loop, and then as aliases of
+    /// the loop, each with the multiple of the loop's rate beside which it lies.
+    pub fn met(&self, highest: f64) -> (Vec<[f64; 2]>, Vec<([f64; 2], f64)>) {
         let (body, looped) = self.resonances.split_at(self.of_body);
-        let mut own: Vec<[f64; 2]> = looped.to_vec();
+        let folded = |frequency: f64| (frequency - self.turn * libm::round(frequency / self.turn)).abs();
+        // Those of the modes are narrow, and hardly answer at their aliases.
+        let is_mode = |at: f64| body.iter().any(|[own, _]| (folded(*own) / at - 1.0).abs() < OF_MODE);
+        let mut own: Vec<[f64; 2]> = looped.iter().copied().filter(|[at, _]| !is_mode(*at)).collect();
         own.sort_by(|a, b| a[0].total_cmp(&b[0]));
         own.dedup_by(|later, kept| later[0] - kept[0] < APART * kept[1].min(later[1]));
         let folds = (libm::ceil(highest / self.turn) as usize).min(MOST_FOLDS / own.len().max(1));
-        let aliases = (0..=folds).flat_map(|fold| {
+        let aliases = (1..=folds).flat_map(|fold| {
             let turned = fold as f64 * self.turn;
-            own.iter().flat_map(move |[at, width]| [[turned - at, *width], [turned + at, *width]])
+            own.iter().flat_map(move |[at, width]| {
+                [([turned - at, *width], turned), ([turned + at, *width], turned)]
+            })
         });
-        body.iter().copied().chain(aliases).filter(|[at, _]| (0.0..=highest).contains(at) && *at > 0.0).collect()
+        let is_below = |at: f64| at > 0.0 && at <= highest;
+        let direct = self.resonances.iter().copied().filter(|[at, _]| is_below(*at)).collect();
+        (direct, aliases.filter(|([at, _], _)| is_below(*at)).collect())
     }
 
     /// Returns the response to each load at a frequency (rad/s).
@@ -119,8 +129,11 @@ impl<'a> LoopTransfer<'a> {
     pub fn at(&self, frequency: f64) -> Result<Vec<LoadResponse>, ConfigError> {
         let turns = self.lines.turns(frequency)?;
         let nearest = turns.frequencies.iter().map(|own| own.abs()).fold(f64::INFINITY, f64::min);
-        let frequency =
-            if nearest * turns.period < LEAST_ALIAS { frequency + LEAST_ALIAS / turns.period } else { frequency };
+        let frequency = if nearest * turns.period < LEAST_ALIAS {
+            frequency + LEAST_ALIAS / turns.period
+        } else {
+            frequency
+        };
         let turns = self.lines.turns(frequency)?;
         let count = self.loads.ncols();
         let order = self.loads.nrows();
@@ -144,8 +157,12 @@ impl<'a> LoopTransfer<'a> {
             let mut forced = DMatrix::zeros(order, count);
             for (load, state) in states.iter().enumerate() {
                 for axis in 0..b.ncols() {
-                    let torque =
-                        turns.held_amplitude((&period_rows.pieces, |piece| &piece.torque), axis, state, place);
+                    let torque = turns.held_amplitude(
+                        (&period_rows.pieces, |piece| &piece.torque),
+                        axis,
+                        state,
+                        place,
+                    );
                     for row in 0..order {
                         forced[(row, load)] += torque * b[(row, axis)];
                     }
@@ -161,15 +178,17 @@ impl<'a> LoopTransfer<'a> {
                 OutputRow::Body(row) => {
                     row.iter().zip(motions[place].column(load).iter()).map(|(c, x)| x * *c).sum()
                 }
-                OutputRow::Command(axis) => {
-                    turns.command_amplitude(&period_rows.pieces, *axis, state, place)
-                }
+                OutputRow::Command(axis) => turns.command_amplitude(&period_rows.pieces, *axis, state, place),
             };
             let all = |output: &usize| (0..motions.len()).map(|place| amplitude(output, place)).collect();
             LoadResponse {
                 frequencies: turns.frequencies.iter().map(|own| own.abs()).collect(),
                 amplitudes: self.outputs.iter().map(all).collect(),
-                sampled: self.outputs.iter().map(|output| self.at_samples(*output, &period_rows, state)).collect(),
+                sampled: self
+                    .outputs
+                    .iter()
+                    .map(|output| self.at_samples(*output, &period_rows, state))
+                    .collect(),
             }
         };
         Ok(states.iter().enumerate().map(of_load).collect())

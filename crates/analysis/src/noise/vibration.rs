@@ -51,7 +51,9 @@ impl Vibration {
     /// Returns the lines of an output: those of its broadband sources, which are Gaussian, or those of machines with lines.
     pub fn lines(&self, output: usize, is_gaussian: bool) -> impl Iterator<Item = &SpectralLine> + Clone {
         let own = self.outputs.get(&output).map_or(&[][..], |sources| sources);
-        own.iter().filter(move |source| source.density.is_some() == is_gaussian).flat_map(|source| &source.lines)
+        own.iter()
+            .filter(move |source| source.density.is_some() == is_gaussian)
+            .flat_map(|source| &source.lines)
     }
 }
 

@@ -9,7 +9,8 @@ use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use flexsc_core::analysis::budget::{
-    CampaignBudget, DisturbedLoop, ErrorSources, IndexBudget, IndexRun, PointingBudget, linear_sources, noise_cycle, sine_frequencies,
+    CampaignBudget, DisturbedLoop, ErrorSources, IndexBudget, IndexRun, PointingBudget, linear_sources,
+    noise_cycle, sine_frequencies,
 };
 use flexsc_core::campaign::{Campaign, Design, RunOutcome};
 use flexsc_core::formats::count::counted;
