@@ -33,8 +33,8 @@ fn agree(what: &str, found: f64, expected: f64, part: f64) {
     assert!((found / expected - 1.0).abs() < part, "{what}: {found:.12e}, expected {expected:.12e}");
 }
 
-/// The wheels of the scenario have some inertia, of 2e-8 of the deviations. Samples at 1 kHz, and at 100 Hz, where the law shakes the second mode through its aliases. Source: `tests/golden/broadband.py`.
-/// The continuous loop of `optics.py`, whose wheel turns, has 5.755262772e-8 and 6.211101866e-8.
+/// Samples at 1 kHz, and at 100 Hz, where the law shakes the second mode through its aliases. Source: `tests/golden/broadband.py`; the
+/// wheels of the scenario have some inertia, which is 2e-8 of the deviations.
 #[test]
 fn broadband_forces_move_the_line_of_sight_as_covariances_say() {
     let dir = Dir::new();
@@ -55,11 +55,14 @@ fn broadband_forces_move_the_line_of_sight_as_covariances_say() {
             agree("samples", number(&output["sample_rms"]), at_samples[about], 1e-6);
             agree("mean", number(&output["window"]["mpe"]), means[about], 1e-6);
             let last = output["cumulative_rms"].as_array().and_then(|all| all.last()).expect("numbers");
+            // At 1 kHz the loop is nearly the continuous one of the bench, whose wheel turns.
+            if period < 0.005 {
+                let bench = [(5.755_262_772e-8, 1e-4), (6.211_101_866e-8, 2e-3)];
+                agree("bench", number(&output["rms"]), bench[about].0, bench[about].1);
+            }
             agree("cumulative", number(last), over_time[about], 1e-6);
         }
     }
-    agree("bench", 5.755_744_552_569e-8, 5.755_262_772e-8, 1e-4);
-    agree("bench", 6.221_408_940_798e-8, 6.211_101_866e-8, 2e-3);
 }
 
 /// Cooler whose strokes are known to a tenth.
