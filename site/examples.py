@@ -59,7 +59,7 @@ def playground() -> str:
         "---\nhide: [navigation, toc, footer]\nsearch:\n  boost: 2\n---\n\n# Playground\n\n"
         '<link rel="stylesheet" href="playground/style.css">\n\n'
         f"{page}\n"
-        '<script src="playground/gallery.js"></script>\n<script src="playground/main.js"></script>\n'
+        '<script src="playground/gallery.js"></script>\n<script src="playground/load.js"></script>\n'
     )
 
 

@@ -183,18 +183,19 @@ def build() -> str | None:
     for folder in (MADE, NEW):
         shutil.rmtree(folder, ignore_errors=True)
     NEW.mkdir(parents=True)
-    model = NEW / "model.js"
+    scripts = [NEW / name for name in ("main.js", "model.js")]
     try:
         bundle()
         module = packed(engine())
     except Absent as absent:
         return str(absent)
-    files = {"engine.wasm": module, "model.js": packed(model.read_bytes())}
+    files = {"engine.wasm": module} | {script.name: packed(script.read_bytes()) for script in scripts}
     for name, data in files.items():
         (NEW / f"{name}.gz").write_bytes(data)
         text = base64.b64encode(data).decode("ascii")
         (NEW / f"{name}.gz.js").write_text(f'(self.FLEXSC_FILES ??= {{}})["{name}"]="{text}";\n', "ascii")
-    model.unlink()
+    for script in scripts:
+        script.unlink()
     shutil.copyfile(SOURCE / "style.css", NEW / "style.css")
     # What is in base64 is for pages that are opened from a folder.
     sent = (path for path in sorted(NEW.iterdir()) if not path.name.endswith(".gz.js"))

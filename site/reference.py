@@ -242,8 +242,8 @@ GROUPS = {
     "CampaignAnswer Comparison Row optimise explore Explorer sensitivities Sensitivities WorstCase "
     "PointingBudget IndexBudget BudgetLevel",
     "Linear models, margins and noise": "Linear Signal CommonMargins LoopMargins StabilityMargins "
-    "NoiseSpectrum OutputNoise SettlingTime WheelSpectrum WheelLines OutputBound Witness TunedScenario "
-    "TunedPlant TunedMeasure",
+    "NoiseSpectrum OutputNoise MirrorSensitivity SettlingTime WheelSpectrum WheelLines OutputBound "
+    "Witness TunedScenario TunedPlant TunedMeasure",
     "Your own parts": "Law ThreeAxisLaw CompiledLaw Sensor Estimator Actuator Adaptation "
     "DisturbanceModel Guidance CompiledThreeAxisLaw CompiledDisturbance CompiledGuidance "
     "Reading Hold ThreeAxisHold Effort Load Aim",

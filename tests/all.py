@@ -119,7 +119,8 @@ def crates() -> None:
     run(sys.executable, "release/licences.py", "--check")
     deny = shutil.which("cargo-deny") or TOOLS / "bin" / "cargo-deny"
     if not Path(deny).exists():
-        run("cargo", "install", "--quiet", "--locked", "--debug", "--root", TOOLS, "cargo-deny")
+        fast = ("--quiet", "--locked", "--debug", "--config", "profile.dev.debug=false")
+        run("cargo", "install", *fast, "--root", TOOLS, "cargo-deny")
     run(deny, "check", "bans", "licenses", "sources")
 
 

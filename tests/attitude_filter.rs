@@ -1,6 +1,5 @@
 //! The attitude filter in the loop: gyro, star tracker, law and wheels on a three-axis body.
 
-use flexsc_core::analysis::linear_loop::LinearLoop;
 use flexsc_core::metrics::MetricsCollector;
 use flexsc_core::{Scenario, Simulation};
 
@@ -150,18 +149,6 @@ fn what_no_gyro_can_be_is_refused() {
         let error = scenario(&[("rate_random_walk = 1e-8", keys)]).expect_err("refused");
         assert!(error.contains(words), "{error}");
     }
-}
-
-#[test]
-fn linear_loops_refuse_means_over_exposures() {
-    let parts = |exposure: &str| {
-        let latency = format!("latency = 0.6{exposure}");
-        let change = [("latency = 0.6", &latency[..]), ("ASSESS", "form = \"steady\"")];
-        LinearLoop::from_scenario(&scenario(&change).expect("valid"))
-    };
-    assert!(parts("").is_ok());
-    let fault = parts(", exposure = 0.1").expect_err("refused").to_string();
-    assert!(fault.contains("sensor[1].star_tracker.exposure` is not supported in linear loops"), "{fault}");
 }
 
 /// A loop whose analysis has no late rates has no spectral radius.

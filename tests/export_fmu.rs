@@ -29,6 +29,33 @@ fn a_changed_key_changes_the_fmu() {
 }
 
 #[test]
+fn an_fmu_holds_the_libraries_of_several_platforms() {
+    let dir = Dir::with(&["relay-fixed"]);
+    dir.write("a.so", "of linux");
+    dir.write("b.dll", "of windows");
+    let libraries = "--library linux64=a.so x86_64-windows=b.dll";
+    for (version, folders) in [("2", ["linux64", "win64"]), ("3", ["x86_64-linux", "x86_64-windows"])] {
+        dir.run(&format!("export-fmu relay-fixed.toml --fmi {version} {libraries} -o {version}.fmu"))
+            .exits(0);
+        // Names are not compressed.
+        let bytes = dir.read(&format!("{version}.fmu"));
+        for path in
+            [format!("binaries/{}/flexsc.so", folders[0]), format!("binaries/{}/flexsc.dll", folders[1])]
+        {
+            assert!(bytes.windows(path.len()).any(|part| part == path.as_bytes()), "{path}");
+        }
+    }
+    for (options, words) in [
+        ("--library linux65=a.so", "is no platform"),
+        ("--library linux64=a.so x86_64-linux=b.dll", "two libraries"),
+        ("--fmi 2 --library aarch64-linux=a.so", "export FMI 3.0"),
+    ] {
+        dir.run(&format!("export-fmu relay-fixed.toml {options} -o c.fmu")).exits(2).says(&[words]);
+        assert!(!dir.has("c.fmu"));
+    }
+}
+
+#[test]
 fn what_cannot_be_exported_is_refused_and_nothing_is_written() {
     let dir = Dir::with(&["relay-fixed"]);
     let refused = |options: &str, words: &[&str]| {

@@ -95,6 +95,28 @@ fn parameters_beyond_their_limits_are_refused_by_number() {
 }
 
 #[test]
+fn modes_whose_names_run_together_have_parameters_of_their_own() {
+    let dir = Dir::with(&["cubesat-day"]);
+    let mut text = dir.text("cubesat-day.toml");
+    // `detumble` ends in `sun_to_pass`, and `detumble_to_sun` in `pass`.
+    for (from, to) in [
+        ("name = \"sun\"", "name = \"sun_to_pass\""),
+        ("{ to = \"sun\",", "{ to = \"sun_to_pass\","),
+        ("name = \"point\"", "name = \"detumble_to_sun\""),
+        ("{ to = \"point\",", "{ to = \"detumble_to_sun\","),
+        ("run_time > 17600", "rate > 1 and run_time > 17600"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    dir.write("cubesat-day.toml", text);
+    dir.run("export-c cubesat-day.toml -o out --name sat --calls 10 --guest cfs").exits(0);
+    let header = dir.text("out/sat.h");
+    let declared = |name: &str| header.matches(&format!("    double {name};\n")).count();
+    assert_eq!((declared("detumble_to_sun_to_pass_0"), declared("detumble_to_sun_to_pass_0_")), (1, 1));
+}
+
+#[test]
 fn ends_of_a_mode_with_one_target_have_parameters_of_their_own() {
     if !is_installed("gcc") {
         return;

@@ -35,6 +35,7 @@ mod line_of_sight;
 mod linear;
 mod linear_poles;
 mod model;
+mod mounts;
 mod orbit_rows;
 mod orbits;
 mod outside;
@@ -65,6 +66,7 @@ mod earth_observer;
 mod envelopes;
 mod exposure;
 mod filters;
+mod fine_mirror;
 mod goals;
 mod isolators;
 mod jets;
@@ -140,6 +142,8 @@ mod flight_cubesat;
 mod flight_exports;
 #[cfg(feature = "flight-code")]
 mod flight_guests;
+#[cfg(feature = "flight-code")]
+mod flight_lockstep;
 #[cfg(feature = "flight-code")]
 mod flight_pages;
 #[cfg(feature = "flight-code")]

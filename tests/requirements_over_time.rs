@@ -382,6 +382,7 @@ fn the_figure_of_a_requirement_names_what_decides() {
         "holds = \"pointing_error < 2e-3\"",
         after,
         "holds = \"when mode enters fine: within 5 s: mode(fine)\"",
+        "holds = \"always not mode(safe)\"",
     ];
     dir.write("modes.toml", holding(MODES, &all));
     dir.run("simulate modes.toml").exits(0);
@@ -400,6 +401,11 @@ fn the_figure_of_a_requirement_names_what_decides() {
     dir.run("plot modes.mcap --what requirement:R2 -o one.svg").exits(0);
     let one = dir.text("one.svg");
     assert!(one.contains("R2 1: robustness") && !one.contains("R1 0"), "{one}");
+    // A flag that never holds has its panel.
+    dir.run("plot modes.mcap --what requirement:R4 -o never.svg").exits(0);
+    assert!(dir.text("never.svg").contains("R4 3: robustness"));
+    dir.run("plot modes.mcap --what requirement --what requirement:R2 -o both.svg").exits(0);
+    assert!(dir.text("both.svg").contains("R1 0: robustness"));
     dir.run("plot modes.mcap --what requirement:R9").exits(2).says(&["requirement:R9", "R2 (1)"]);
 }
 

@@ -452,6 +452,12 @@ int flexsc_command(flexsc_client *client, const double *values, int quantity)
     return flexsc_command_each(client, values, quantities);
 }
 
+int flexsc_hold(flexsc_client *client)
+{
+    const double none[3] = {0.0, 0.0, 0.0};
+    return flexsc_command(client, none, FLEXSC_HOLD);
+}
+
 void flexsc_close(flexsc_client *client)
 {
     if (client->socket >= 0) {

@@ -25,8 +25,8 @@
 
 enum { FLEXSC_UDP, FLEXSC_TCP };
 
-/* Quantities of commands: N m, rad/s, rad/s^2, A m^2. */
-enum { FLEXSC_TORQUE, FLEXSC_RATE_CHANGE, FLEXSC_ACCELERATION, FLEXSC_MOMENT };
+/* Quantities of commands: N m, rad/s, rad/s^2, A m^2; the last one stands for no command. */
+enum { FLEXSC_TORQUE, FLEXSC_RATE_CHANGE, FLEXSC_ACCELERATION, FLEXSC_MOMENT, FLEXSC_HOLD };
 
 /* Values of a field such as `gyro.status`: no reading yet, no new one since the last cycle, a new one. */
 enum { FLEXSC_NONE, FLEXSC_HELD, FLEXSC_NEW };
@@ -97,6 +97,9 @@ int flexsc_command(flexsc_client *client, const double *values, int quantity);
 
 /* Answers the present cycle with commands of a quantity for each axis. */
 int flexsc_command_each(flexsc_client *client, const double *values, const int *quantities);
+
+/* Answers the present cycle without commands: those in force stay, and the run goes on as if the cycle had not been. */
+int flexsc_hold(flexsc_client *client);
 
 /* Closes the connection. */
 void flexsc_close(flexsc_client *client);

@@ -63,6 +63,13 @@ EXAMPLES = {
     >>> round(margins.gain_above, 2), round(margins.delay, 3), round(margins.modulus, 4)
     (3.03, 80.738, 0.6247)
     """,
+    "MirrorSensitivity": """
+    >>> mirror = {"frequency": 1885.0, "damping": 0.6, "period": 0.005, "gain": 0.25}
+    >>> craft = flexsc.Scenario.example("wheel-run-up").with_("line_of_sight[0].mirror", mirror)
+    >>> found = craft.spectrum(speeds=[40.0]).mirrors[0]
+    >>> found.point, bool(found.sensitivity[0] < 0.1), found.peak > 1.0
+    ('bench', True, True)
+    """,
     "NoiseSpectrum": """
     >>> spectrum = flexsc.Scenario.example("attitude-hold").spectrum(["pitch"], window=1.0)
     >>> noise = spectrum.outputs["pitch"]

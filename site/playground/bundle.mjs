@@ -15,4 +15,4 @@ const worker = {
     });
   },
 };
-await build({ ...common, entryPoints: ["main.js", "model.js"], outdir: folder, plugins: [worker] });
+await build({ ...common, entryPoints: ["load.js", "main.js", "model.js"], outdir: folder, plugins: [worker] });

@@ -1,7 +1,7 @@
 // Files that the page needs are compressed: from a server as they are; from a folder, where nothing may be fetched, in base64 within a
-// script.
+// script. Their folder is that of the first script: a compressed one has no place of its own.
 
-const folder = document.currentScript.src.replace(/[^/]*$/, "");
+const folder = (globalThis.FLEXSC_FOLDER ??= document.currentScript.src.replace(/[^/]*$/, ""));
 
 export async function script(src) {
   return new Promise((resolve, reject) => {

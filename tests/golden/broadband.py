@@ -8,10 +8,11 @@ those that begin at any time: a mean over their starts. pip install numpy scipy
 from functools import cache
 
 import numpy as np
-from optics import HUB, bench
+from optics import Bench
 from scipy.linalg import expm, solve_discrete_lyapunov
 from scipy.optimize import minimize_scalar
 
+HUB = np.diag([4.2, 3.9, 4.8])
 LOWER, UPPER = 2 * np.pi * 5.0, 2 * np.pi * 120.0
 DENSITY = 1e-6
 BANDWIDTH = 2 * np.pi * 0.05
@@ -24,6 +25,12 @@ FILTERS = np.array(
     ]
 )
 SHAPED = np.array([UPPER**2, 0, -(LOWER**2), -1.4 * LOWER])
+
+
+def bench():
+    """The mass, damping and stiffness of the free body at rest, and the loads of the wheel unit and the line of sight over its motion."""
+    free = Bench(0.0, mounted=False, loop=False)
+    return free.m, free.d, free.k, free.wheel.T, free.sight
 
 
 def system():

@@ -57,9 +57,10 @@ def test_the_examples_of_the_client_run(tmp_path: Path) -> None:
     source = described(Path(lockstep.__file__))
     client, cycle = source["Client"], source["Cycle"]
     texts = [client.text]
-    texts += [text for name, text in client.members.items() if name not in {"command", "close"}]
-    texts += [cycle.text, *cycle.members.values(), client.members["command"], client.members["close"]]
-    assert len(texts) == 15
+    texts += [text for name, text in client.members.items() if name not in {"command", "hold", "close"}]
+    texts += [cycle.text, *cycle.members.values()]
+    texts += [client.members[name] for name in ("command", "hold", "close")]
+    assert len(texts) == 16
     with serving(tmp_path) as (_, port):
         names: dict[str, Any] = {"port": port}
         for text in [*texts, source["LockstepError"].text]:

@@ -1,10 +1,12 @@
 //! Analyses of a scenario or a run: linear models, mode tables, limit cycles, stability.
 
+pub mod body_poles;
 pub mod bound;
 pub mod budget;
 pub mod damping;
 pub mod describing_function;
 pub mod eigenvalues;
+pub mod fine_mirror;
 pub mod identification;
 pub mod limit_cycle;
 pub mod linear_attitude_filter;

@@ -27,6 +27,8 @@ pub struct MountedSensor {
     pub period: f64,
     /// Latency of the samples (s).
     pub latency: f64,
+    /// Time over which a sample is the mean (s), about its middle; 0 for the attitude at an instant.
+    pub exposure: f64,
     /// True if the sensor reports the mean rate over each sampling period.
     pub integrates: bool,
     /// Rotation of the mount about each axis for a unit displacement of each mode (rad/(m sqrt(kg))).
@@ -55,6 +57,7 @@ impl LinearAttitudeFilter {
                     .or(settings.sample_period)
                     .map_or(0.0, Span::seconds),
                 latency,
+                exposure: sensor.exposure().seconds(),
                 integrates: sensor.integrates(),
                 turned: shapes.iter().map(|(_, rotation)| (*rotation).into()).collect(),
             }
@@ -63,7 +66,7 @@ impl LinearAttitudeFilter {
         for (index, role) in setting.roles.iter().enumerate() {
             match role {
                 SensorRole::None => {}
-                SensorRole::Gyro { .. } => found.0 = Some(mounted(index, 0.0)),
+                SensorRole::Gyro { latency } => found.0 = Some(mounted(index, latency.seconds())),
                 SensorRole::Corrects { .. } if scenario.sensor[index].measures_vector() => {
                     let why = format!(
                         "reads the directions of `{}`, with which its gains change with the attitude and do not settle, so that there \

@@ -42,9 +42,6 @@ impl LinearLoop {
     /// # Errors
     /// An estimator that is not linear, or does not settle: its key, and the reason.
     pub fn from_scenario(scenario: &Scenario) -> Result<Self, ConfigError> {
-        if let Some(fault) = scenario.validate_for_loop_analysis() {
-            return Err(fault);
-        }
         let axes = scenario.study.axes.len();
         let filters = (0..axes).map(|axis| scenario.law.about(axis).filter_coefficients()).collect();
         let reads = |axis: usize| scenario.law.about(axis).needs() == EstimateNeeds::DominantMode;

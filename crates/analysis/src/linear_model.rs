@@ -2,7 +2,8 @@
 //!
 //! A one-axis body has the system of `CoupledMatrices`. With three axes G' = M + H x w, q'' + D q' + W² q = phi' (M + H x w): G
 //! = J w_r, with the rate of the hub w = w_r + phi q' where modes act back on it, and the rotor momentum H
-//! (\[Likins70\]). Environment torques are left out.
+//! (\[Likins70\]). A rotor h at a point of the structure gives h x w_p there, with the rotations phi_p and the rate w_p = w_r + phi_p
+//! q' of the point: its modes whirl. Environment torques are left out.
 
 use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_dynamics::flow::CoupledMatrices;
@@ -11,6 +12,7 @@ use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{AXES, Vector};
 use flexsc_numerics::inverse::inverse_3x3;
+use flexsc_numerics::quantity::Finite;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::body::BodyAxes;
@@ -61,13 +63,26 @@ impl LinearModel {
     /// # Errors
     /// A body that is no linear system: its key, and the reason.
     pub fn from_scenario(scenario: &Scenario, time: f64) -> Result<Self, ConfigError> {
+        Self::at(scenario, time, None)
+    }
+
+    /// Returns the linear model of a scenario's body at the start, with the wheels that points of the structure carry at a speed
+    /// (rad/s), each in the sense of its speed at the start.
+    ///
+    /// # Errors
+    /// See [`Self::from_scenario`].
+    pub fn at_wheel_speed(scenario: &Scenario, speed: f64) -> Result<Self, ConfigError> {
+        Self::at(scenario, 0.0, Some(speed))
+    }
+
+    fn at(scenario: &Scenario, time: f64, wheel_speed: Option<f64>) -> Result<Self, ConfigError> {
         if scenario.study.articulation().is_some() {
             let why = "turn appendages, so the body changes with time and is not a linear system";
             return Err(ConfigError::new("appendage", format!("has drives that {why}")));
         }
         Ok(match scenario.model.axes() {
             BodyAxes::One(body) => Self::for_one_axis(scenario, body, time),
-            BodyAxes::Three(body) => Self::for_three_axes(scenario, body),
+            BodyAxes::Three(body) => Self::for_three_axes(scenario, body, wheel_speed),
         })
     }
 
@@ -124,24 +139,29 @@ impl LinearModel {
         Self::new(&coupled.system, &b, states, vec![signal("torque", body.torque_unit())], outputs)
     }
 
-    fn for_three_axes(scenario: &Scenario, body: &ThreeAxisModel) -> Self {
+    fn for_three_axes(scenario: &Scenario, body: &ThreeAxisModel, wheel_speed: Option<f64>) -> Self {
         let (settings, modes) = (&scenario.study, body.modes.len());
         let (inertia, coupling) = (body.inertia, body.coupling.as_ref());
         // The tensor was checked, so it has an inverse.
         let inverse = inverse_3x3(inertia).unwrap_or_else(Matrix3::identity);
         let seed = Seed { scenario: scenario.seed, run: 0 };
-        let stored =
+        let mut stored =
             Vector::from(settings.actuator(scenario, seed).capabilities().stored_momentum(Instant::START));
         let measured = settings.measured_rates(body);
         let hub = |mode: usize| coupling.map_or_else(Vector::zeros, |coupling| coupling.rotations[mode]);
         let order = 6 + 2 * modes;
         let (mut a, mut b) = (DMatrix::zeros(order, order), DMatrix::zeros(order, 3));
-        // Response of rates and modes to a torque at the hub.
-        let mut pushed = DMatrix::zeros(order, 3);
-        pushed.view_mut((3, 0), (3, 3)).copy_from(&inverse);
-        for mode in 0..modes {
-            pushed.view_mut((7 + 2 * mode, 0), (1, 3)).copy_from(&hub(mode).transpose());
-        }
+        // Response of rates and modes to a torque at a place of these rotations, and the rate there.
+        let turned_at = |rotation: &dyn Fn(usize) -> Vector| {
+            let (mut pushed, mut rate) = (DMatrix::zeros(order, 3), DMatrix::zeros(3, order));
+            pushed.view_mut((3, 0), (3, 3)).copy_from(&inverse);
+            rate.view_mut((0, 3), (3, 3)).fill_with_identity();
+            for mode in 0..modes {
+                pushed.view_mut((7 + 2 * mode, 0), (1, 3)).copy_from(&rotation(mode).transpose());
+                rate.view_mut((0, 7 + 2 * mode), (3, 1)).copy_from(&rotation(mode));
+            }
+            (pushed, rate)
+        };
         for axis in 0..3 {
             let input = &measured.inputs[axis];
             let rigid = Vector::from_fn(|row, _| input.turning[row] * input.acceleration);
@@ -153,14 +173,16 @@ impl LinearModel {
             }
             a[(axis, 3 + axis)] = 1.0;
         }
-        let mut rate = DMatrix::zeros(3, order);
-        for axis in 0..3 {
-            rate[(axis, 3 + axis)] = 1.0;
-            for mode in 0..modes {
-                rate[(axis, 7 + 2 * mode)] = hub(mode)[axis];
-            }
+        for carried in &settings.carried_rotors {
+            let momentum = |speed: f64| carried.rotor.axis * (carried.rotor.spin_inertia * speed);
+            stored -=
+                momentum(carried.speed + carried.rotor.axis.dot(&Vector::from(body.rate.map(Finite::get))));
+            let (pushed, rate) = turned_at(&|mode| carried.rotations[mode]);
+            let speed = wheel_speed.map_or(carried.speed, |speed| speed.copysign(carried.speed));
+            a += pushed * momentum(speed).cross_matrix() * rate;
         }
-        a += &pushed * stored.cross_matrix() * rate;
+        let (pushed, rate) = turned_at(&hub);
+        a += pushed * stored.cross_matrix() * rate;
         for (index, mode) in body.modes.iter().enumerate() {
             let (q, w) = (6 + 2 * index, mode.frequency.get());
             a[(q, q + 1)] = 1.0;

@@ -7,7 +7,8 @@ use flexsc_formats::document::ConfigError;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::margins::{StabilityMargins, UnstableLoop, common_delay};
+use super::fine_mirror::mirror_margins;
+use super::margins::{SignalMargins, StabilityMargins, UnstableLoop, common_delay};
 use super::open_loop::{LoopBreak, LoopParts, OpenLoop};
 use super::settling_time::SettlingTime;
 use flexsc_scenario::Scenario;
@@ -27,6 +28,9 @@ pub struct ScenarioMargins {
     /// Settling times of each angle after a step of the target about each axis; none if they cannot be computed.
     #[schemars(extend("x-name" = "settling_times"))]
     pub settling: Vec<SettlingTime>,
+    /// Margins of the loops of fine mirrors, cut open at the means of their guidance sensors.
+    #[schemars(extend("x-key" = "signal"))]
+    pub mirrors: Vec<SignalMargins>,
 }
 
 /// Reason why a scenario has no margins.
@@ -58,9 +62,11 @@ impl ScenarioMargins {
         let parts = LoopParts::from_scenario(scenario, opened).map_err(MarginsFault::Key)?;
         let cut = OpenLoop::from_parts(&parts).map_err(MarginsFault::Key)?;
         let stability = StabilityMargins::new(&cut).map_err(MarginsFault::Unstable)?;
+        let mirrors = mirror_margins(scenario).map_err(MarginsFault::Unstable)?;
+        let mirrors = mirrors.into_iter().flat_map(|own| own.loops).collect();
         let parts = parts.opened_at(LoopBreak::Command);
         let common_delay_s = common_delay(&parts).map_err(MarginsFault::Key)?;
         let settling = parts.settling_times().unwrap_or_default();
-        Ok(Self { stability, cut, common_delay_s, settling })
+        Ok(Self { stability, cut, common_delay_s, settling, mirrors })
     }
 }

@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use flexsc_cosim::{CoSimulationError, FmiVersion, FmuContent, FmuPart, find_library, fmu_bytes};
+use flexsc_cosim::{CoSimulationError, FmiVersion, FmuContent, FmuPart, Platform, find_library, fmu_bytes};
 
 use crate::error::CliError;
 use crate::{files, out, say, scenario};
@@ -31,9 +31,10 @@ pub struct ExportFmuArgs {
     /// Part of the scenario that the FMU simulates
     #[arg(long, value_enum, default_value = "loop")]
     part: Part,
-    /// Library of FMUs [default: the one beside this program]
-    #[arg(long, value_name = "FILE")]
-    library: Option<PathBuf>,
+    /// Libraries of FMUs, such as linux64=a.so win64=b.dll; without a platform that of this program [default: the one beside this
+    /// program]
+    #[arg(long, value_name = "[PLATFORM=]FILE", num_args = 1.., value_parser = library_of_platform)]
+    library: Vec<StatedLibrary>,
     /// File to write: FILE.fmu
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
@@ -72,11 +73,34 @@ impl From<CoSimulationError> for CliError {
     }
 }
 
-/// Returns the path of the library: as stated, or beside this program.
-fn library(stated: Option<&Path>) -> Result<PathBuf, CliError> {
-    if let Some(path) = stated {
-        return Ok(path.to_owned());
+/// Library with its platform; `None` is that of this program.
+type StatedLibrary = (Option<&'static Platform>, PathBuf);
+
+/// Parses a library, with a platform or without.
+fn library_of_platform(text: &str) -> Result<StatedLibrary, String> {
+    match text.split_once('=') {
+        // A path may have the sign too.
+        Some((name, path)) if !name.contains(['/', '\\', '.']) => Platform::from_name(name)
+            .map(|of| (Some(of), PathBuf::from(path)))
+            .map_err(|error| error.to_string()),
+        _ => Ok((None, PathBuf::from(text))),
     }
+}
+
+/// Returns the content of a library.
+fn read_library(path: &Path) -> Result<Vec<u8>, CliError> {
+    let unread = |why: &dyn Display| {
+        CliError::Arguments(format!("cannot read the library of FMUs, {}: {why}", path.display()))
+    };
+    // A device may never end.
+    if !fs::metadata(path).map_err(|error| unread(&error))?.is_file() {
+        return Err(unread(&"not a file"));
+    }
+    fs::read(path).map_err(|error| unread(&error))
+}
+
+/// Returns the path of the library beside this program.
+fn library() -> Result<PathBuf, CliError> {
     if let Some(path) = env::var_os(LIBRARY).map(PathBuf::from).filter(|path| path.is_file()) {
         return Ok(path);
     }
@@ -86,8 +110,8 @@ fn library(stated: Option<&Path>) -> Result<PathBuf, CliError> {
 }
 
 pub fn run(args: &ExportFmuArgs) -> Result<(), CliError> {
-    let inputs: Vec<&Path> =
-        [&args.scenario].into_iter().chain(&args.library).map(PathBuf::as_path).collect();
+    let libraries = args.library.iter().map(|(_, path)| path);
+    let inputs: Vec<&Path> = [&args.scenario].into_iter().chain(libraries).map(PathBuf::as_path).collect();
     out::file(&args.out, &["fmu"], &inputs)?;
     let part = FmuPart::from_name(match args.part {
         Part::Loop => "loop",
@@ -104,16 +128,12 @@ pub fn run(args: &ExportFmuArgs) -> Result<(), CliError> {
         None => scenario,
     };
     let content = FmuContent::new(&scenario, part)?;
-    let path = library(args.library.as_deref())?;
-    let unread = |why: &dyn Display| {
-        CliError::Arguments(format!("cannot read the library of FMUs, {}: {why}", path.display()))
+    let stated = if args.library.is_empty() { vec![(None, library()?)] } else { args.library.clone() };
+    let read = |(platform, path): (Option<&'static Platform>, PathBuf)| {
+        Ok((platform.map_or_else(Platform::host, Ok)?, read_library(&path)?))
     };
-    // A device may never end.
-    if !fs::metadata(&path).map_err(|error| unread(&error))?.is_file() {
-        return Err(unread(&"not a file"));
-    }
-    let library = fs::read(&path).map_err(|error| unread(&error))?;
-    let bytes = fmu_bytes(&content, &library, version)?;
+    let libraries: Vec<_> = stated.into_iter().map(read).collect::<Result<_, CliError>>()?;
+    let bytes = fmu_bytes(&content, &libraries, version)?;
     files::write(&args.out, &bytes, args.force)?;
     say!("{}", args.out.display());
     Ok(())

@@ -4,18 +4,20 @@ mod spacecraft;
 
 use std::io::Write;
 
-use flexsc_core::Scenario;
+use flexsc_core::analysis::body_poles::WhirlPoles;
 use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
 use flexsc_core::formats::count::counted;
 use flexsc_core::numerics::attitude::AXES;
 use flexsc_core::spacecraft::body::{BodyAxes, Drive};
+use flexsc_core::{Scenario, ScenarioError};
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
 use crate::human::{Units, UnitsArgs, digits};
 use crate::number::unsigned_zero;
+use crate::quantity::in_unit;
 use crate::results::{Results, show, with_scenario_name};
 use crate::row_table::print_table;
 use crate::{say, scenario};
@@ -30,6 +32,9 @@ pub struct ModesArgs {
     /// Print every influence, also those below 1e-3 of the largest
     #[arg(long)]
     all: bool,
+    /// Speed of the wheels that points of the structure carry (rad/s), for the poles with whirl [default: each at its speed at the start]
+    #[arg(long, value_name = "SPEED", value_parser = in_unit("rad/s"))]
+    speed: Option<f64>,
     #[command(flatten)]
     units: UnitsArgs,
 }
@@ -64,24 +69,34 @@ struct ThreeAxisTable {
 }
 
 /// Computes the modes of a scenario's body.
-pub fn results(scenario: &Scenario, args: &ModesArgs) -> Box<dyn Results> {
+pub fn results(scenario: &Scenario, args: &ModesArgs) -> Result<Box<dyn Results>, CliError> {
     let name = scenario.name.clone();
+    let whirl = WhirlPoles::from_scenario(scenario, args.speed).map_err(|fault| ScenarioError::Key {
+        origin: name.clone(),
+        key: fault.key,
+        why: fault.why,
+    })?;
+    if args.speed.is_some() && whirl.is_none() {
+        let why =
+            format!("--speed: {name} has no `actuator.wheels.points` on a part that moves against the hub");
+        return Err(CliError::Arguments(why));
+    }
     let style = Style { units: args.units.units, all: args.all };
     if let Some(craft) = scenario.model.spacecraft() {
         let (parts, jets) = (SpacecraftModes::from_scenario(scenario, craft), scenario.study.jet_only_axes);
-        return Box::new(spacecraft::Spacecraft { name, parts, jets, style });
+        return Ok(Box::new(spacecraft::Spacecraft { name, parts, whirl, jets, style }));
     }
-    match scenario.model.axes() {
+    Ok(match scenario.model.axes() {
         BodyAxes::Three(body) => {
             let (modes, jets) = (ModeInfluences::from_scenario(scenario, body), scenario.study.jet_only_axes);
             Box::new(ThreeAxisTable { name, modes, jets, style })
         }
         BodyAxes::One(body) => Box::new(OneAxisTable { name, modal: OneAxisModes::from_body(body), style }),
-    }
+    })
 }
 
 pub fn run(args: &ModesArgs) -> Result<(), CliError> {
-    show(&*results(&args.scenario.load()?, args), None, args.scenario.json)
+    show(&*results(&args.scenario.load()?, args)?, None, args.scenario.json)
 }
 
 fn texts(words: &[&str]) -> Vec<String> {

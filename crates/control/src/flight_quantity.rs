@@ -64,9 +64,9 @@ flight_quantities! {
     /// Accelerations of the reference (rad/s²).
     ReferenceAcceleration "reference_acceleration", "reference" "acceleration", "rad/s²", "reference: acceleration";
     /// Momentum stored in the rotors (N m s).
-    StoredMomentum "stored_momentum", "" "stored_momentum", "N m s", "momentum stored in the rotors, body axes";
+    StoredMomentum "stored_momentum", "" "stored_momentum", "N m s", "absolute momentum stored in the rotors, body axes";
     /// Speeds of the wheels (rad/s).
-    WheelSpeed "wheel_speed", "" "wheel_speed", "rad/s", "speed of each wheel";
+    WheelSpeed "wheel_speed", "wheels" "speed", "rad/s", "speed of each wheel relative to the body, by its tachometer";
     /// Last measured magnetic field (T).
     Field "field", "" "field", "T", "measured magnetic field, body axes";
     /// Rate of change of the measured magnetic field (T/s).

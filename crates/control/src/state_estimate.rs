@@ -41,6 +41,12 @@ impl StateEstimate {
     }
 }
 
+/// Returns the estimated rate about each axis (rad/s); 0 about axes without an estimate.
+#[inline]
+pub fn estimated_rates(estimates: &[StateEstimate]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| estimates.get(axis).map_or(0.0, |estimate| estimate.rate))
+}
+
 /// Mode that a step of the torque excites most, by an estimate.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct DominantMode {

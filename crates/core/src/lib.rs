@@ -75,6 +75,7 @@ pub use flexsc_spacecraft as spacecraft;
 pub use flexsc_formats::document::{Diagnostic, Document, LONGEST, ScenarioError, nearest};
 pub use flexsc_scenario::Scenario;
 pub use flexsc_sim::{
-    ControlCall, ControlDecision, ModeTrial, QuantityField, QuantityGroup, SensorSample, SensorTelemetry,
-    Simulation, SimulationError, StopAt, Telemetry, TelemetryLayout, TelemetrySensor, UnloadingCall,
+    ControlCall, ControlDecision, KnownRotors, ModeTrial, QuantityField, QuantityGroup, SensorSample,
+    SensorTelemetry, Simulation, SimulationError, StopAt, Telemetry, TelemetryLayout, TelemetrySensor,
+    UnloadingCall,
 };

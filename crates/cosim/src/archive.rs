@@ -1,4 +1,4 @@
-//! Archive of an FMU: the model description, the library of the platform, its licences and the scenario, with equal bytes at each export.
+//! Archive of an FMU: the model description, the library of each platform, its licences and the scenario, with equal bytes at each export.
 
 use std::borrow::Cow;
 use std::io::{Cursor, Read, Write};
@@ -12,6 +12,7 @@ use crate::description::model_description;
 use crate::error::CoSimulationError;
 use crate::fmi_version::{FmiVersion, MODEL_IDENTIFIER};
 use crate::fmu_run::FmuRun;
+use crate::platform::Platform;
 
 /// Licences of flexsc and of the crates in its library, which release/licences.py writes.
 const LICENCES: &str = include_str!("../licences.txt");
@@ -21,28 +22,36 @@ const ZIP: &[u8] = b"PK\x03\x04";
 /// Largest size of a library (bytes).
 const MOST_BYTES: u64 = 1 << 30;
 
-/// Returns the bytes of an FMU with this library, which may be the only file of a ZIP archive, as packages have it.
+/// Returns the bytes of an FMU with these libraries, each for a platform; one may be the only file of a ZIP archive, as packages have
+/// it.
 ///
 /// # Errors
-/// Fails for a platform without a name in this version of FMI, or an archive that cannot be read.
+/// Fails for a platform without a name in this version of FMI, for two libraries of one platform, or an archive that cannot be read.
 pub fn fmu_bytes(
     content: &FmuContent,
-    library: &[u8],
+    libraries: &[(&Platform, Vec<u8>)],
     version: FmiVersion,
 ) -> Result<Vec<u8>, CoSimulationError> {
     let run = FmuRun::new(content.clone())?;
     let description = model_description(run.scenario(), run.table(), &content.token(), version);
-    let binary =
-        format!("binaries/{}/{MODEL_IDENTIFIER}{}", version.platform()?, std::env::consts::DLL_SUFFIX);
-    let packed = |error| CoSimulationError::refused(format!("cannot unpack the library of FMUs: {error}"));
-    let library = unpacked(library).map_err(packed)?;
-    let files = [
-        ("modelDescription.xml".to_owned(), description.as_bytes()),
-        (binary, &library),
+    let mut binaries: Vec<(String, Cow<'_, [u8]>)> = Vec::new();
+    for (platform, library) in libraries {
+        let folder = platform.folder(version)?;
+        let path = format!("binaries/{folder}/{MODEL_IDENTIFIER}{}", platform.suffix);
+        if binaries.iter().any(|(other, _)| *other == path) {
+            return Err(CoSimulationError::refused(format!("there are two libraries for {folder}")));
+        }
+        let packed =
+            |error| CoSimulationError::refused(format!("cannot unpack the library of FMUs: {error}"));
+        binaries.push((path, unpacked(library).map_err(packed)?));
+    }
+    let mut files = vec![("modelDescription.xml".to_owned(), description.as_bytes())];
+    files.extend(binaries.iter().map(|(path, library)| (path.clone(), &library[..])));
+    files.extend([
         ("documentation/licenses/license.txt".to_owned(), LICENCES.as_bytes()),
         (format!("resources/{PART}"), content.part.name().as_bytes()),
         (format!("resources/{SCENARIO}"), content.toml.as_bytes()),
-    ];
+    ]);
     archive(&files).map_err(|error| CoSimulationError::refused(format!("cannot pack the FMU: {error}")))
 }
 

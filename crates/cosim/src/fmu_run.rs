@@ -129,7 +129,7 @@ impl FmuRun {
     ///
     /// # Errors
     /// Fails for a reference of another kind.
-    pub fn get_integer(&self, reference: u32) -> Access<i64> {
+    pub fn get_integer(&mut self, reference: u32) -> Access<i64> {
         match self {
             Self::Spacecraft(run) => run.get_integer(reference),
             Self::Laws(run) => run.get_integer(reference),

@@ -48,6 +48,12 @@ pub enum Quantity {
     Observed(usize),
     /// Value at this index of the estimates and references that laws read.
     LawInput(usize),
+    /// Value at the second index of the last reading of the sensor at the first index.
+    Reading(usize, usize),
+    /// Whole seconds of the time at which the last reading of the sensor at this index became available.
+    ReadingWhole(usize),
+    /// Femtoseconds of that time past the whole second.
+    ReadingFemtoseconds(usize),
     /// Output of laws alone at this index.
     LawOutput(usize),
     /// Momentum stored in the rotors about this axis.

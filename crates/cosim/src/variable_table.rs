@@ -2,7 +2,7 @@
 
 use flexsc_core::numerics::time::Span;
 use flexsc_core::record::description::field_text;
-use flexsc_core::{QuantityField, QuantityGroup, Scenario, Simulation};
+use flexsc_core::{QuantityField, QuantityGroup, Scenario, Simulation, TelemetrySensor};
 
 use crate::content::FmuPart;
 use crate::parameters::numeric_keys;
@@ -151,7 +151,9 @@ impl VariableTable {
         if !self.is_commanded {
             return;
         }
-        for field in &simulation.telemetry_layout(scenario).law_inputs {
+        let telemetry = simulation.telemetry_layout(scenario);
+        self.add_readings(&telemetry.sensors);
+        for field in &telemetry.law_inputs {
             let is_new = !observed.iter().any(|known| known.path() == field.path());
             for index in 0..field.width() {
                 let quantity = Quantity::LawInput(self.law_inputs);
@@ -166,6 +168,29 @@ impl VariableTable {
                 let text = "Momentum stored in the rotors, as available to the drives, body axes".to_owned();
                 let name = format!("stored_momentum[{}]", axis + 1);
                 self.push(name, text, "N m s", Causality::Output, Quantity::StoredMomentum(axis));
+            }
+        }
+    }
+
+    /// Adds the last reading of each sensor with its time, of a plant.
+    fn add_readings(&mut self, sensors: &[TelemetrySensor]) {
+        for (place, sensor) in sensors.iter().enumerate() {
+            let group = &sensor.group;
+            let text =
+                "Whole seconds of the time at which the last reading became available; -1 before the first";
+            self.push_count(&format!("{group}.time_whole_s"), text, "s", Quantity::ReadingWhole(place));
+            let text = "Femtoseconds of that time past the whole second";
+            self.push_count(&format!("{group}.time_fs"), text, "", Quantity::ReadingFemtoseconds(place));
+            let mut value = 0;
+            for field in &sensor.fields {
+                for index in 0..field.width() {
+                    let component = field.shape.count().map_or(String::new(), |_| format!("[{}]", index + 1));
+                    let (name, mut text) = (format!("{group}.{}{component}", field.name), field.text(index));
+                    text[..1].make_ascii_uppercase();
+                    let quantity = Quantity::Reading(place, value);
+                    self.push(name, text, field.unit, Causality::Output, quantity).is_discrete = true;
+                    value += 1;
+                }
             }
         }
     }

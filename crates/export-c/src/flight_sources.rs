@@ -14,7 +14,7 @@ macro_rules! sources {
 }
 
 /// Number of files.
-const COUNT: usize = 51;
+const COUNT: usize = 52;
 
 /// Returns the source files of the flight code.
 pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
@@ -70,5 +70,6 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "trigonometry",
         "vector3",
         "wheel_allocation",
+        "wheel_momentum",
     ]
 }

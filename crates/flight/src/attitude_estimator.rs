@@ -80,9 +80,10 @@ impl AttitudeEstimator {
         status
     }
 
-    /// Takes an observation at `now`.
+    /// Takes an observation at `now`; `sensor` is the number of its counter of refused readings.
     pub fn take_observation(
         &mut self,
+        sensor: usize,
         now: Ticks,
         latency: Ticks,
         observation: &AttitudeObservation,
@@ -90,6 +91,7 @@ impl AttitudeEstimator {
         observations: &mut [DelayedObservation],
     ) -> ReadingStatus {
         let delayed: DelayedObservation = DelayedObservation {
+            sensor,
             exposed: observation_exposure(now, latency, self.started),
             observation: *observation,
             angle_inflation: 0.0,

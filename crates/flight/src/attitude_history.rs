@@ -9,6 +9,7 @@ use crate::attitude_filter::{AttitudeBiasFilter, GyroNoise};
 use crate::attitude_gate::AttitudeGate;
 use crate::attitude_observation::{AttitudeObservation, Correction};
 use crate::binary64::infinity;
+use crate::maths::min;
 use crate::reading_status::ReadingStatus;
 use crate::ticks::Ticks;
 use crate::vector3::Vector3;
@@ -16,6 +17,9 @@ use crate::vector3::Vector3;
 /// Largest ratio of the variance of an accepted measurement to that of the refused ones before it, at which it shows that they were
 /// false: twice the standard deviation.
 const MOST_VARIANCE_RATIO: f64 = 4.0;
+
+/// Number of counters of refused readings.
+pub const REFUSAL_COUNTERS: usize = 8;
 
 /// Attitude filter at one instant of its recent past.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -37,6 +41,8 @@ impl AttitudeHistoryEntry {
 /// Measurement of the attitude or a vector with the time of its exposure.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct DelayedObservation {
+    /// Number of the sensor, of those that have a counter of refused readings; 0 is the gyro.
+    pub sensor: usize,
     /// Time of the exposure.
     pub exposed: Ticks,
     /// Measured attitude or vector.
@@ -50,6 +56,7 @@ pub struct DelayedObservation {
 impl DelayedObservation {
     /// Empty measurement, which fills storage.
     pub const NONE: Self = Self {
+        sensor: 0,
         exposed: Ticks { whole: 0, part: 0 },
         observation: AttitudeObservation::NONE,
         angle_inflation: 0.0,
@@ -80,12 +87,14 @@ pub struct AttitudeHistory {
     pub least_variance: f64,
     /// Exposure of the last correction that left no improbable measurements to count; before the first one, the start.
     pub confirmed: Ticks,
+    /// Variance (rad²/s²) by which that of the bias is inflated at most: that of the start.
+    pub most_bias_inflation: f64,
     /// True after the clock was set back, until a measurement has corrected the filter with an inflated covariance.
     pub is_unsure: bool,
     /// Number of gyro readings in a row that were older than the last one.
     pub setbacks: u32,
-    /// Number of readings refused since the start.
-    pub refused: u64,
+    /// Number of readings of each sensor refused since the start; the last counter has those of all further sensors too.
+    pub refused: [u64; REFUSAL_COUNTERS],
     /// Exposure of the last measurement that corrected the filter; before the first one, the start.
     pub corrected: Ticks,
     /// Index of the oldest entry.
@@ -120,15 +129,31 @@ impl AttitudeHistory {
             improbable: 0,
             least_variance: 0.0,
             confirmed: time,
+            most_bias_inflation: filter.covariance.rows[3][3],
             is_unsure: false,
             setbacks: 0,
-            refused: 0,
+            refused: [0; REFUSAL_COUNTERS],
             corrected: time,
             first: 0,
             entries: count,
             applied: 0,
             waiting: 0,
         }
+    }
+
+    /// Returns the number of readings of all sensors refused since the start.
+    pub fn refusals(&self) -> u64 {
+        let mut sum: u64 = 0;
+        for sensor in 0..REFUSAL_COUNTERS {
+            sum += self.refused[sensor];
+        }
+        sum
+    }
+
+    /// Counts a refused reading of a sensor.
+    fn count_refusal(&mut self, sensor: usize) {
+        let counter: usize = if sensor < REFUSAL_COUNTERS { sensor } else { REFUSAL_COUNTERS - 1 };
+        self.refused[counter] += 1;
     }
 
     /// Returns true if the storage holds the history.
@@ -157,7 +182,7 @@ impl AttitudeHistory {
             return ReadingStatus::Untimely;
         }
         if !self.gate.is_sound_rate(reading) {
-            self.refused += 1;
+            self.count_refusal(0);
             return ReadingStatus::Unsound;
         }
         if !now.is_before(entries[self.latest()].time) {
@@ -166,7 +191,7 @@ impl AttitudeHistory {
         }
         self.setbacks += 1;
         if self.setbacks <= self.gate.most_refusals {
-            self.refused += 1;
+            self.count_refusal(0);
             return ReadingStatus::Untimely;
         }
         entries[0] = entries[self.latest()];
@@ -192,12 +217,40 @@ impl AttitudeHistory {
         entries: &mut [AttitudeHistoryEntry],
         observations: &mut [DelayedObservation],
     ) -> Correction {
+        let mut correction: Correction = Correction::NONE;
+        let is_added: bool = self.add_interval(now, reading, entries, observations);
+        if !is_added {
+            return correction;
+        }
+        let mut early: usize = 0;
+        while early < self.waiting {
+            let result: Correction = self.apply_waiting(early, now, entries, observations);
+            if result.status == ReadingStatus::Waiting {
+                early += 1;
+            }
+            if result.status.has_corrected() {
+                correction = result;
+            }
+        }
+        self.forget(now, entries);
+        correction
+    }
+
+    /// Adds the gyro reading (rad/s) of the interval that ends at `now`, without the measurements that waited for it; returns false if
+    /// it is not later than the last one.
+    pub fn add_interval(
+        &mut self,
+        now: Ticks,
+        reading: Vector3,
+        entries: &mut [AttitudeHistoryEntry],
+        observations: &[DelayedObservation],
+    ) -> bool {
         if !self.is_held(entries, observations) || entries.len() < 2 {
-            return Correction::NONE;
+            return false;
         }
         let from: Ticks = entries[self.latest()].time;
         if !from.is_before(now) {
-            return Correction::NONE;
+            return false;
         }
         self.make_room(entries);
         let last: usize = self.latest();
@@ -206,36 +259,31 @@ impl AttitudeHistory {
         entries[last + 1].reading = reading;
         entries[last + 1].filter.predict(&reading, now.since(from).seconds(), &self.noise);
         self.entries += 1;
-        let correction: Correction = self.apply_waiting(now, entries, observations);
+        true
+    }
+
+    /// Removes the entries that no accepted measurement reaches any more.
+    pub fn forget(&mut self, now: Ticks, entries: &[AttitudeHistoryEntry]) {
         // The last older entry stays: the interval with the oldest exposure still accepted begins there.
         while self.entries > 1 && !now.is_before(entries[self.first + 1].time.plus(self.reach)) {
             self.first += 1;
             self.entries -= 1;
         }
-        correction
     }
 
-    /// Corrects by the measurements that a gyro reading until `now` covers, in the order of arrival. Returns the last correction.
-    fn apply_waiting(
+    /// Corrects by the waiting measurement with this index, if a gyro reading until `now` covers it: then it waits no longer.
+    pub fn apply_waiting(
         &mut self,
+        index: usize,
         now: Ticks,
         entries: &mut [AttitudeHistoryEntry],
         observations: &mut [DelayedObservation],
     ) -> Correction {
-        let mut correction: Correction = Correction::NONE;
-        let mut early: usize = 0;
-        while early < self.waiting {
-            let index: usize = self.applied + early;
-            if now.is_before(observations[index].exposed) {
-                early += 1;
-            } else {
-                let result: Correction = self.apply(index, entries, observations);
-                if result.status.has_corrected() {
-                    correction = result;
-                }
-            }
+        let place: usize = self.applied + index;
+        if now.is_before(observations[place].exposed) {
+            return Correction::unused(ReadingStatus::Waiting);
         }
-        correction
+        self.apply(place, entries, observations)
     }
 
     /// Adds a measurement, delayed or not. Returns its result: it corrects the filter, waits for a gyro reading, or is refused.
@@ -246,11 +294,11 @@ impl AttitudeHistory {
         observations: &mut [DelayedObservation],
     ) -> Correction {
         if !self.is_held(entries, observations) {
-            self.refused += 1;
+            self.count_refusal(observation.sensor);
             return Correction::unused(ReadingStatus::Untimely);
         }
         if !observation.observation.is_sound() {
-            self.refused += 1;
+            self.count_refusal(observation.sensor);
             return Correction::unused(ReadingStatus::Unsound);
         }
         if self.applied + self.waiting == observations.len() {
@@ -258,7 +306,7 @@ impl AttitudeHistory {
         }
         let index: usize = self.applied + self.waiting;
         if index == observations.len() {
-            self.refused += 1;
+            self.count_refusal(observation.sensor);
             return Correction::unused(ReadingStatus::Untimely);
         }
         observations[index] = observation;
@@ -282,11 +330,13 @@ impl AttitudeHistory {
         let most_nis: f64 = if self.is_unsure { -1.0 } else { self.gate.most_nis };
         let mut correction: Correction = self.correct_at_exposure(&observation, most_nis, entries);
         if correction.status == ReadingStatus::Improbable && self.is_reaccepted(&observation) {
-            // As uncertain as the innovation shows, and the bias as if it had drifted since the last correction.
+            // As uncertain as the innovation shows, and the bias as if it had drifted since the last correction, but no more than at the
+            // start: after a gyro that spiked the bias is none the worse.
             let seconds: f64 = observation.exposed.since(self.confirmed).seconds();
             observation.angle_inflation = correction.innovation.norm_squared();
             if seconds > 0.0 && !self.is_unsure {
-                observation.bias_inflation = observation.angle_inflation / (seconds * seconds);
+                observation.bias_inflation =
+                    min(observation.angle_inflation / (seconds * seconds), self.most_bias_inflation);
             }
             correction = self.correct_at_exposure(&observation, infinity(), entries);
             if correction.status == ReadingStatus::Accepted {
@@ -298,7 +348,7 @@ impl AttitudeHistory {
             self.count_improbable(variance);
         }
         if correction.status.is_refusal() {
-            self.refused += 1;
+            self.count_refusal(observation.sensor);
         }
         if correction.status.has_corrected() {
             self.is_unsure = false;

@@ -69,12 +69,12 @@ impl AttitudeFeedback {
         acceleration
     }
 
-    /// Integrates the error over a period, unless a limit acts and the integral would grow, or the error is not a number.
+    /// Integrates the error over a period, unless a limit acts and the integral would grow, or the error is not finite.
     #[inline]
     fn integrate(&mut self, error: f64, is_limited: bool) {
         if self.has_integral && !(is_limited && error * self.integral > 0.0) {
             let sum: f64 = self.integral + self.period * error;
-            if !sum.is_nan() {
+            if sum.is_finite() {
                 self.integral = clamp(sum, -self.integral_limit, self.integral_limit);
             }
         }

@@ -17,25 +17,45 @@ pub struct FieldRate {
     pub has_rate: bool,
     /// Rate of change (T/s); 0 before the second sample.
     pub rate: Vector3,
+    /// Age of the last sample above which the rate is unknown.
+    pub most_age: Ticks,
 }
 
 impl FieldRate {
-    /// Rate before the first sample.
-    pub const NONE: Self = Self {
-        has_field: false,
-        at: Ticks { whole: 0, part: 0 },
-        field: Vector3::ZERO,
-        has_rate: false,
-        rate: Vector3::ZERO,
-    };
+    /// Returns the rate before the first sample; it is unknown if the last sample is older than `most_age`.
+    pub fn new(most_age: Ticks) -> Self {
+        Self {
+            has_field: false,
+            at: Ticks { whole: 0, part: 0 },
+            field: Vector3::ZERO,
+            has_rate: false,
+            rate: Vector3::ZERO,
+            most_age,
+        }
+    }
+
+    /// Returns true if the last sample is too old, or later than `now`.
+    #[inline]
+    pub fn is_stale(&self, now: Ticks) -> bool {
+        now.is_before(self.at) || self.at.plus(self.most_age).is_before(now)
+    }
+
+    /// Returns the rate of change at a time (T/s); 0 if it is unknown.
+    #[inline]
+    pub fn rate_at(&self, now: Ticks) -> Vector3 {
+        if self.is_stale(now) { Vector3::ZERO } else { self.rate }
+    }
 
     /// Takes a sample of the field in body axes (T). One at the time of the last sample replaces it; one that is not finite changes
-    /// nothing.
+    /// nothing. After a gap the rate is unknown until the next sample.
     pub fn take(&mut self, now: Ticks, field: &Vector3) {
         if !field.norm_squared().is_finite() {
             return;
         }
-        self.has_rate = self.has_field && self.at.is_before(now);
+        self.has_rate = self.has_field && self.at.is_before(now) && !self.is_stale(now);
+        if self.is_stale(now) {
+            self.rate = Vector3::ZERO;
+        }
         if self.has_rate {
             let change: Vector3 = field.minus(&self.field);
             let span: Ticks = now.since(self.at);

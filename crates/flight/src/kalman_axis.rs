@@ -96,9 +96,11 @@ impl KalmanAxis {
         }
     }
 
-    /// Shifts the estimated angle by a change of the target (rad).
+    /// Shifts the estimated angle by a change of the target (rad); one that is not finite changes nothing.
     pub fn shift(&mut self, by: f64, mean: &mut [f64]) {
-        mean[0] += by;
-        self.angle += by;
+        if by.is_finite() {
+            mean[0] += by;
+            self.angle += by;
+        }
     }
 }

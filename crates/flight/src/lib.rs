@@ -73,6 +73,7 @@ pub mod torque_distribution;
 pub mod trigonometry;
 pub mod vector3;
 pub mod wheel_allocation;
+pub mod wheel_momentum;
 
 #[cfg(test)]
 mod comparison;

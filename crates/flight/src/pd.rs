@@ -66,7 +66,8 @@ impl PdLaw {
             ErrorDerivative::Difference => difference / self.period,
             ErrorDerivative::Raw => difference,
         };
-        self.has_last = true;
+        // After an error that is not finite the difference starts again.
+        self.has_last = error.is_finite();
         self.last = error;
         let torque: f64 = -self.k_p * error - self.k_d * derivative;
         clamp(torque, -self.limit, self.limit)

@@ -14,10 +14,12 @@ use flexsc_flight::kalman::{self, KalmanInnovation, KalmanSample};
 use flexsc_flight::kalman_axis::{KalmanAxis, KalmanFeed};
 use flexsc_flight::magnetorquers::{moment_of_torque, torque_of_moment};
 use flexsc_flight::momentum_unloading::MomentumUnloading;
+use flexsc_flight::pd::{ErrorDerivative, PdLaw};
 use flexsc_flight::pulse_width::PulseQuantum;
 use flexsc_flight::rigid_rate::RigidRateFilter;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
+use flexsc_flight::wheel_momentum::stored;
 use nalgebra::{DMatrix, DVector};
 
 /// Rows of [A B] and of [C D], the samples of the inputs, and 0.8 times the outputs by `scipy.signal.dlsim`:
@@ -269,11 +271,15 @@ fn a_filter_without_measurements_loses_lock_after_its_window() {
     let before = axis.angle;
     axis.shift(0.5, &mut mean);
     assert!(axis.angle == before + 0.5 && mean[0] > 0.4);
+    let shifted = (axis.angle, mean);
+    axis.shift(f64::NAN, &mut mean);
+    axis.shift(f64::INFINITY, &mut mean);
+    assert!((axis.angle, mean) == shifted, "a shift that is not finite changes nothing");
 }
 
 #[test]
 fn the_rate_of_the_field_is_that_of_the_last_two_samples() {
-    let mut field = FieldRate::NONE;
+    let mut field = FieldRate::new(Ticks { whole: 3, part: 0 });
     let at = |milliseconds: i64| Ticks { whole: 0, part: milliseconds * 1_000_000_000_000 };
     field.take(at(100), &Vector3::new(1e-5, 2e-5, -3e-5));
     assert!(!field.has_rate && field.rate == Vector3::ZERO);
@@ -283,6 +289,35 @@ fn the_rate_of_the_field_is_that_of_the_last_two_samples() {
     assert!((x + 16.0).abs() < 1e-12 && limited_moment(x, 1.5) == -1.5);
     field.take(at(600), &Vector3::new(3e-5, 2e-5, -4e-5));
     assert!(!field.has_rate && field.rate == before, "a second sample at one time gives no rate");
+}
+
+#[test]
+fn a_rate_of_the_field_is_not_older_than_three_periods() {
+    let at = |whole: i64| Ticks { whole, part: 0 };
+    let mut field = FieldRate::new(at(3));
+    for second in 0..2 {
+        field.take(at(second), &Vector3::new(1e-5 * second as f64, 0.0, 0.0));
+    }
+    assert!(field.rate_at(at(4)).x == 1e-5 && field.rate_at(at(5)) == Vector3::ZERO);
+    // Without a number there is no reading, and after the gap none gives a rate with one before it.
+    field.take(at(4), &Vector3::new(f64::NAN, 0.0, 0.0));
+    field.take(at(6), &Vector3::new(9e-5, 0.0, 0.0));
+    assert!(!field.has_rate && field.rate_at(at(6)) == Vector3::ZERO);
+    field.take(at(7), &Vector3::new(8e-5, 0.0, 0.0));
+    assert!((field.rate_at(at(7)).x + 1e-5).abs() < 1e-19);
+    assert_eq!(field.rate_at(at(6)), Vector3::ZERO, "a clock that was set back");
+}
+
+#[test]
+fn the_momentum_of_wheels_is_that_of_their_speeds_and_of_the_rate() {
+    let axes = [Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.0, 0.6, 0.8)];
+    let rate = Vector3::new(1.0, 2.0, 3.0);
+    // 0.5 (10 + 1) = 5.5 about x, and 0.5 (-4 + 3.6) = -0.2 about the other axis.
+    let momentum = stored(&axes, 0.5, &[10.0, -4.0], &rate);
+    assert!(momentum.minus(&Vector3::new(5.5, -0.12, -0.16)).norm() < 1e-15, "{momentum:?}");
+    // A tachometer without a number counts as a wheel at rest: 0.5 * 3.6.
+    let momentum = stored(&axes, 0.5, &[10.0, f64::NAN], &rate);
+    assert!(momentum.minus(&Vector3::new(5.5, 1.08, 1.44)).norm() < 1e-15, "{momentum:?}");
 }
 
 #[test]
@@ -345,7 +380,36 @@ fn numbers_that_are_not_finite_leave_no_trace() {
     };
     let motion = AxisMotion { angle: f64::NAN, ..AxisMotion::default() };
     assert!(law.step(&motion, &AxisReference::default(), &mut []).is_nan());
+    let motion = AxisMotion { angle: f64::INFINITY, ..AxisMotion::default() };
+    assert!(law.step(&motion, &AxisReference::default(), &mut []).is_infinite());
     assert_eq!(law.integral, 0.01);
+}
+
+#[test]
+fn a_difference_starts_again_after_an_error_that_is_not_finite() {
+    for (derivative, per_second) in [(ErrorDerivative::Difference, 2.0), (ErrorDerivative::Raw, 1.0)] {
+        let mut law = PdLaw {
+            k_p: 0.0,
+            k_d: 1.0,
+            limit: 100.0,
+            period: 0.5,
+            measure: ErrorMeasure::Quaternion,
+            derivative,
+            has_last: false,
+            last: 0.0,
+        };
+        let mut step = |angle: f64| {
+            law.step(&AxisMotion { angle, ..AxisMotion::default() }, &AxisReference::default(), &[])
+        };
+        // Twice the vector part of a quaternion: with the total angle 0 the angle itself.
+        step(0.1);
+        assert!((step(0.3) + 0.2 * per_second).abs() < 1e-15);
+        for none in [f64::NAN, f64::INFINITY] {
+            step(none);
+            assert_eq!(step(0.3), 0.0);
+            assert!((step(0.4) + 0.1 * per_second).abs() < 1e-15);
+        }
+    }
 }
 
 #[test]

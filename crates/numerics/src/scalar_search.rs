@@ -82,6 +82,41 @@ pub fn maximum(mut f: impl FnMut(f64) -> f64, mut low: f64, mut high: f64) -> (f
     if at_left >= at_right { (left, at_left) } else { (right, at_right) }
 }
 
+/// Largest number of evaluations of a search for a resonance.
+const MOST_EVALUATIONS: usize = 24;
+
+/// Returns the argument of the maximum of a positive function near a resonance, whose values at three increasing arguments rise and
+/// fall: by parabolas through the reciprocal squares at the best three arguments, which are exact for one resonance alone. The
+/// argument has some nine digits.
+pub fn resonance(mut f: impl FnMut(f64) -> f64, arguments: [f64; 3], values: [f64; 3]) -> f64 {
+    let [mut low, _, mut high] = arguments;
+    let square = |value: f64| 1.0 / (value * value);
+    let mut best = [0, 1, 2].map(|place: usize| (square(values[place]), arguments[place]));
+    best.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for _ in 0..MOST_EVALUATIONS {
+        let [(at, x), (at_second, second), (at_third, third)] = best;
+        let (p, q) = ((x - second) * (at - at_third), (x - third) * (at - at_second));
+        let step = 0.5 * ((x - second) * p - (x - third) * q) / (p - q);
+        if !step.is_finite() || step.abs() < 1e-9 * x.abs() {
+            break;
+        }
+        let within = (low..high).contains(&(x - step));
+        let longer = if x - low > high - x { low } else { high };
+        let next = if within { x - step } else { 0.5 * (x + longer) };
+        let value = square(f(next));
+        // What is beyond the better of two arguments is no maximum.
+        if (value <= at) == (next < x) {
+            high = x.max(next)
+        } else {
+            low = x.min(next)
+        }
+        let mut all = [best[0], best[1], best[2], (value, next)];
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        best = [all[0], all[1], all[2]];
+    }
+    best[0].1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,5 +146,21 @@ mod tests {
     fn a_maximum_to_rounding() {
         let (place, value) = maximum(|x| 3.0 - (x - 0.7) * (x - 0.7), 0.1, 4.0);
         assert!((place - 0.7).abs() < 2e-8 && (value - 3.0).abs() < 1e-15, "{place} {value}");
+    }
+
+    /// The response of an oscillator of damping 0.01 under an imbalance: w²/|1 - w² + 2 j zeta w|, the largest at 1/sqrt(1 - 2 zeta²).
+    #[test]
+    fn a_resonance_with_few_evaluations() {
+        let zeta = 0.01;
+        let response = |w: f64| w * w / libm::hypot(1.0 - w * w, 2.0 * zeta * w);
+        let mut count = 0;
+        let counted = |w: f64| {
+            count += 1;
+            response(w)
+        };
+        let ends = [0.8, 1.02, 1.3];
+        let found = resonance(counted, ends, ends.map(response));
+        assert!((found - 1.0 / f64::sqrt(1.0 - 2.0 * zeta * zeta)).abs() < 1e-8, "{found}");
+        assert!(count < 16, "{count} evaluations");
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use flexsc_core::record::{self, Detail, LogBytes, RunEnd, atomic_file};
 use flexsc_core::scenario::date_from_text;
-use flexsc_cosim::{CoSimulationError, FmiVersion, FmuContent, FmuPart, fmu_bytes};
+use flexsc_cosim::{CoSimulationError, FmiVersion, FmuContent, FmuPart, Platform, fmu_bytes};
 use flexsc_handover::{HandoverError, HandoverFormat, HandoverOptions, hand_over, hand_over_run};
 use flexsc_view::scene::Scene;
 use flexsc_view::with_layout;
@@ -115,7 +115,8 @@ pub fn export_fmu(
     let content = content.map_err(fmu_error)?;
     let unread = |error| wrong(format!("cannot read the library of FMUs, {}: {error}", library.display()));
     let library = fs::read(&library).map_err(unread)?;
-    let bytes = aside(py, move |_| fmu_bytes(&content, &library, version))?.map_err(fmu_error)?;
+    let bytes = aside(py, move |_| fmu_bytes(&content, &[(Platform::host()?, library)], version))?
+        .map_err(fmu_error)?;
     write(&path, &bytes)
 }
 

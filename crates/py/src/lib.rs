@@ -32,6 +32,7 @@ use std::ffi::OsString;
 use std::fmt;
 use std::path::PathBuf;
 
+use flexsc_core::analysis::body_poles::WhirlPoles;
 use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::answer::RunObserver;
@@ -243,6 +244,13 @@ impl Scenario {
             BodyAxes::One(body) => json!(OneAxisModes::from_body(body)).to_string(),
             BodyAxes::Three(body) => json!(ModeInfluences::from_scenario(&self.inner, body)).to_string(),
         }
+    }
+
+    /// Returns the frequency (rad/s) and damping ratio of each pole with the wheels that points of the structure carry at a speed.
+    fn whirl_poles(&self, speed: Option<f64>) -> PyResult<Vec<(f64, f64)>> {
+        let found = WhirlPoles::from_scenario(&self.inner, speed).map_err(|fault| self.key_error(fault))?;
+        let poles = found.map_or_else(Vec::new, |found| found.poles);
+        Ok(poles.into_iter().map(|pole| (pole.frequency_rad_s, pole.damping)).collect())
     }
 
     fn to_toml(&self) -> String {

@@ -232,6 +232,9 @@ impl Scenario {
         }
         for (index, line) in self.line_of_sight.iter().enumerate() {
             each(format!("line_of_sight[{index}].period"), duration, line.period);
+            if let Some(mirror) = line.mirror {
+                each(format!("line_of_sight[{index}].mirror.period"), LOOKS.0 * duration, mirror.period);
+            }
         }
         let laws = (0..self.axis_count()).flat_map(|axis| self.law.laws_about(axis));
         for (key, period) in laws.filter_map(|of| Some((of.key, of.law.period()?))) {

@@ -181,6 +181,10 @@ fn validate_leaves(
     let offers = written.offers(model);
     let why = expression.leaves().into_iter().find_map(|(quantity, _)| match quantity {
         ModeQuantity::Metric(..) => Some("has a metric, which has one value in a run, as a condition"),
+        ModeQuantity::LineOfSight(index) if written.line_of_sight[index].mirror.is_some() => Some(
+            "has a line of sight with a `mirror`, which is known at its samples and not between them: write `quantity` and `limit` \
+             in place of `holds`",
+        ),
         quantity => written.unknown_quantity(quantity, &in_use, &offers),
     });
     why.map_or(Ok(()), |why| Err(ConfigError::new(key, why)))

@@ -11,6 +11,7 @@ use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::fine_mirror::FineMirror;
 use super::optics::{self, LineSensitivity, OpticalElement};
 
 /// Part of a sample by which a rounded window may miss the next one.
@@ -34,6 +35,9 @@ pub struct LineOfSight {
     /// with `point`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub optics: Vec<OpticalElement>,
+    /// Mirror that turns the image back, in a loop of its own; errors of the line of sight are then those behind it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mirror: Option<FineMirror>,
     /// Period of its samples (s).
     pub period: Span,
     /// Start and end (s) of the interval in which it is assessed; default: the whole run.
@@ -57,15 +61,24 @@ impl LineOfSight {
         (axis / axis.amax()).normalize()
     }
 
-    /// Returns how far small motions of the body turn the line of sight.
+    /// Returns two unit vectors across the line of sight: those body axes, in cyclic order, that are furthest from it, less
+    /// their parts along it.
+    pub fn across(&self) -> [Vector; 2] {
+        let direction = self.direction();
+        let along = direction.iamax();
+        let [first, second] = [1, 2].map(|next| Vector::ith((along + next) % 3, 1.0));
+        let first = (first - direction * direction.dot(&first)).normalize();
+        let second = second - direction * direction.dot(&second);
+        [first, (second - first * first.dot(&second)).normalize()]
+    }
+
+    /// Returns how far small motions of the body turn the line of sight, before its mirror.
     pub fn sensitivity(&self, body: &ThreeAxisModel) -> LineSensitivity {
         let direction = self.direction();
         if self.optics.is_empty() {
             return LineSensitivity::for_point(body, &self.point, &direction);
         }
-        let along = direction.iamax();
-        let about = [1, 2].map(|next| Vector::ith((along + next) % 3, 1.0));
-        LineSensitivity::for_optics(body, &self.optics, about)
+        LineSensitivity::for_optics(body, &self.optics, self.across())
     }
 
     /// Returns the remark that optics turn the line of sight by another angle than the rigid body turns.
@@ -116,6 +129,9 @@ impl LineOfSight {
             if let Some(fault) = optics::fault(&self.optics, body) {
                 return Some(fault);
             }
+        }
+        if let Some(fault) = self.mirror.as_ref().and_then(FineMirror::fault) {
+            return Some(fault.within("mirror"));
         }
         if let Some([from, to]) = self.window.map(|window| window.map(Time::get))
             && from >= to

@@ -214,6 +214,10 @@ metrics! {
         "Root mean square deviation of each line of sight from its mean over each jitter_window, over the whole windows; null without one";
     POINT_DISPLACEMENT = "point_displacement_peak_m", "m",
         "Largest displacement of the point of each line of sight by vibration, relative to the hub, over the samples in its window; null without samples";
+    MIRROR_PEAK = "fine_mirror_peak_rad", "rad",
+        "Largest rotation of each line of sight by its fine mirror, over the samples in its window; null without a mirror";
+    MIRROR_LIMITED = "fine_mirror_limited_s", "s",
+        "Time for which stroke or rate limit the command of the fine mirror of each line of sight, to its last sample; null without a mirror";
     FREQUENCY_ESTIMATES = "frequency_estimates_hz", "Hz",
         "Estimated natural frequency of each mode, at the last cycle: those tracked by an adaptive observer, ordered by axis, then by frequency, or those that an attitude filter identifies";
     FREQUENCY_ERRORS = "frequency_estimate_errors", "",

@@ -67,13 +67,15 @@ impl Scenario {
         body.inertia.try_inverse().map_or(0.0, |inverse| inverse.norm() * torque)
     }
 
-    /// Returns the length of steps that resolve viscous friction and the imbalance of wheels at the speeds that they can reach
+    /// Returns the length of steps that resolve viscous friction, whirl and the imbalance of wheels at the speeds that they can reach
     /// (s); infinite without wheels.
     pub(super) fn rotor_step(&self, body: &ThreeAxisModel) -> f64 {
         let Some((wheels, _)) = self.actuator.wheels() else { return f64::INFINITY };
         let highest = self.study.bearings.iter().map(Bearing::highest_order).fold(0.0, f64::max);
         let slowing = self.study.bearings.iter().map(Bearing::viscous_rate).fold(0.0, f64::max);
-        IMBALANCE_PHASE / (highest * self.mean_wheel_speed(wheels, body)).max(slowing)
+        let speed = self.mean_wheel_speed(wheels, body);
+        let whirl = self.study.bearings.iter().map(|own| own.whirl_rate(own.inertia * speed));
+        IMBALANCE_PHASE / (highest * speed).max(slowing).max(whirl.fold(0.0, f64::max))
     }
 
     /// Returns the expected mean speed (rad/s) of the fastest wheel: the initial or bias speed, or a part of the largest speed, if

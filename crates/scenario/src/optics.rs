@@ -45,6 +45,14 @@ impl LineSensitivity {
         }
     }
 
+    /// Returns the sensitivity to the modes besides the rotation of the hub, where they act back on it.
+    #[must_use]
+    pub fn besides_hub(mut self, body: &ThreeAxisModel) -> Self {
+        let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
+        self.modes.iter_mut().zip(hub).for_each(|(mode, hub)| *mode -= self.rigid * hub);
+        self
+    }
+
     /// Returns the sensitivity of optics, whose rows are about two axes.
     pub fn for_optics(body: &ThreeAxisModel, optics: &[OpticalElement], about: [Vector; 2]) -> Self {
         let mut all = Self { rigid: Matrix3::zeros(), modes: vec![Vector::zeros(); body.modes.len()] };

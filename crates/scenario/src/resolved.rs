@@ -3,7 +3,7 @@
 
 use flexsc_control::actuator::{
     Actuator, ActuatorKind, ActuatorSet, ActuatorTask, Allocation, AssignedMember, AxisActuatorContext,
-    BackEmfRate, GroupEffect, GyroAxes, ThrusterEffect,
+    BackEmfRate, CarriedRotor, GroupEffect, GyroAxes, ThrusterEffect,
 };
 use flexsc_control::estimator::{EstimatorKind, adaptive, attitude};
 use flexsc_control::law::{AttitudeProfile, Authority, ErrorBand, Stage, TorqueDistribution};
@@ -72,6 +72,8 @@ pub struct ResolvedScenario {
     pub gimbals: Vec<GyroAxes>,
     /// Bearings of wheels with friction or imbalance.
     pub bearings: Vec<Bearing>,
+    /// Rotors of wheels that turn with a point of the structure other than the hub.
+    pub carried_rotors: Vec<CarriedRotor>,
     /// Back-EMF torque of a wheel per unit of the rate (N m s), and whether the rate is that of the elastic body.
     pub back_emf: (f64, bool),
     /// Design of the adaptive observers.
@@ -169,6 +171,7 @@ impl ResolvedScenario {
         if let Some((wheels, of)) = written.actuator.wheels() {
             let allocation = wheels.allocation().map_err(|fault| fault.within(&of))?;
             self.wheels = Some(allocation);
+            self.carried_rotors = wheels.carried_rotors(body).map_err(|fault| fault.within(&of))?;
             let is_observed = wheels.bearing_key().is_some() || written.sensor.tachometer().is_some();
             if model.is_two_way() && is_observed {
                 let bearings = wheels.bearings(body);

@@ -5,6 +5,7 @@ use flexsc_control::flight_quantity::FlightQuantity;
 use flexsc_control::law::AxisDecision;
 use flexsc_control::operation::ModeQuantity;
 use flexsc_control::sensor::{Orientation, Reading};
+use flexsc_control::state_estimate::estimated_rates;
 use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::time::Instant;
 use nalgebra::Quaternion;
@@ -24,13 +25,24 @@ pub enum ControlCall {
     Unloading(UnloadingCall),
 }
 
+/// Knowledge of the control system of wheels and control moment gyros.
+#[derive(Clone, Debug)]
+pub struct KnownRotors {
+    /// Speeds of the wheels relative to the body, as available to the drives (rad/s).
+    pub wheel_speeds: Vec<f64>,
+    /// Estimated rate about each axis (rad/s).
+    pub rate: [f64; 3],
+    /// Momentum stored in the rotors (N m s).
+    pub stored_momentum: [f64; 3],
+}
+
 /// Cycle of an actuator that unloads wheels, with what it read.
 #[derive(Clone, Debug)]
 pub struct UnloadingCall {
     /// Start of the cycle.
     pub now: Instant,
-    /// Momentum of the wheels (N m s).
-    pub stored_momentum: [f64; 3],
+    /// Speeds and momentum of the rotors, as the control system knows them.
+    pub rotors: KnownRotors,
     /// Magnetic field in body axes (T), as last measured; `None` without a field.
     pub field: Option<[f64; 3]>,
     /// Torque on the body that the wheels counteract from now on (N m).
@@ -79,8 +91,8 @@ pub struct ControlDecision {
     pub axes: Vec<AxisDecision>,
     /// Target attitude from which angles are counted.
     pub origin: Orientation,
-    /// Momentum stored in the rotors, as available to the drives (N m s).
-    pub stored_momentum: [f64; 3],
+    /// Speeds and momentum of the rotors, as the control system knows them.
+    pub rotors: KnownRotors,
     /// Torque that the actuator is asked for about each axis (N m).
     pub demanded_torque: [f64; 3],
     /// Signed on-times about the axes (s) of jets in groups that fire once in a period of the law; `None` of other actuators.
@@ -142,6 +154,16 @@ impl Simulation {
         }
     }
 
+    /// Returns what is known of the rotors.
+    fn known_rotors(&self, now: Instant) -> KnownRotors {
+        let (rigid, estimates) = (self.plant.truth().rigid_rate, &self.estimation.estimates);
+        KnownRotors {
+            wheel_speeds: self.loads.wheel_speeds(now, rigid),
+            rate: estimated_rates(estimates),
+            stored_momentum: self.loads.known_momentum(now, rigid, estimates),
+        }
+    }
+
     /// Records the decisions that the actuator has just taken.
     pub(super) fn trace_decision(&mut self, now: Instant) {
         let axes = self.laws.take_decisions();
@@ -159,7 +181,7 @@ impl Simulation {
             now,
             axes,
             origin: *self.estimation.origin(),
-            stored_momentum: abilities.stored_momentum(now),
+            rotors: self.known_rotors(now),
             demanded_torque,
             wheel_torques: abilities.momentum.map(MomentumStorage::commanded_torques).unwrap_or_default(),
             on_times: abilities.pulses.and_then(PulsedActuator::commanded_on_times),
@@ -172,15 +194,20 @@ impl Simulation {
 
     /// Records the cycle of an unloading actuator, if one has begun at this instant.
     pub(super) fn trace_unloading(&mut self, now: Instant) {
-        let Some(trace) = &mut self.laws.trace else { return };
+        if self.laws.trace.is_none() {
+            return;
+        }
         let abilities = self.loads.actuator.capabilities();
         let Some(cycle) = abilities.unloading.filter(|cycle| cycle.at == Some(now)) else { return };
-        trace.push(ControlCall::Unloading(UnloadingCall {
+        let call = UnloadingCall {
             now,
-            stored_momentum: cycle.stored.into(),
+            rotors: self.known_rotors(now),
             field: self.sensors.magnetic_field(self.plant.truth()).map(Into::into),
             counter_torque: cycle.counter.into(),
             wheel_torques: abilities.momentum.map(MomentumStorage::commanded_torques).unwrap_or_default(),
-        }));
+        };
+        if let Some(trace) = &mut self.laws.trace {
+            trace.push(ControlCall::Unloading(call));
+        }
     }
 }

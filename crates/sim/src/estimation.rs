@@ -127,9 +127,9 @@ impl Estimation {
             ahead: lead_time,
         };
         self.estimator.update(&taken, &mut self.estimates);
-        if let Some(changes) = sensors.field_rate {
-            let each = self.estimates.iter_mut().zip(&changes);
-            each.for_each(|(estimate, change)| estimate.field_rate = *change);
+        if let Some(change) = sensors.last_field_rate() {
+            let each = self.estimates.iter_mut().zip([change.x, change.y, change.z]);
+            each.for_each(|(estimate, change)| estimate.field_rate = change);
         }
         let queued = abilities.pulses.map_or([0.0; 3], PulsedActuator::queued_rate_change);
         for (estimate, queued) in self.estimates.iter_mut().zip(queued) {
@@ -141,6 +141,9 @@ impl Estimation {
     /// state.
     #[inline]
     pub fn predict(&mut self, now: Instant, plant: &Plant, sensors: &Sensors) {
+        if sensors.field_is_stale(now) {
+            self.estimates.iter_mut().for_each(|estimate| estimate.field_rate = 0.0);
+        }
         let mut estimates = std::mem::take(&mut self.estimates);
         self.predict_into(now, plant, sensors, &mut estimates);
         self.estimates = estimates;

@@ -1,16 +1,13 @@
 //! Star-tracker exposures: the mean attitude over each is computed from a copy of the plant, one smooth motion segment
 //! after another.
-//!
-//! Loads change at segment starts that are not known in advance, so a segment is averaged when it is over. The plant of
-//! the run itself is never moved back.
 
 use flexsc_control::sensor::ExposureMean;
-use flexsc_numerics::quadrature;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
 
 use super::SimulationError;
 use super::plant::Plant;
+use super::segment_copy::SegmentCopy;
 use super::sensor_schedule::SensorSchedule;
 use flexsc_scenario::Scenario;
 
@@ -18,10 +15,8 @@ use flexsc_scenario::Scenario;
 #[derive(Clone, Debug)]
 pub struct Exposures {
     shutters: Vec<ExposureTiming>,
-    /// Copy of the plant in the current segment, while an exposure is open; `averaged` is the instant up to which the
-    /// mean is accumulated.
-    copy: Option<Plant>,
-    averaged: Instant,
+    /// Copy of the plant in the current segment, while an exposure is open.
+    copy: SegmentCopy,
 }
 
 /// Exposure timing of one star tracker.
@@ -53,7 +48,7 @@ impl Exposures {
             exposure: ExposureMean::default(),
         };
         let shutters = scenario.sensor.exposures().map(shutter).collect();
-        Self { shutters, copy: None, averaged: Instant::START }
+        Self { shutters, copy: SegmentCopy::new() }
     }
 
     /// Returns the next instant at which an exposure opens or closes.
@@ -65,8 +60,8 @@ impl Exposures {
     /// Copies the plant before it advances from `now`, if an exposure is open and there is no copy of this segment.
     #[inline]
     pub fn copy_plant(&mut self, now: Instant, plant: &Plant) {
-        if self.copy.is_none() && self.shutters.iter().any(|shutter| shutter.is_open) {
-            (self.copy, self.averaged) = (Some(plant.clone()), now);
+        if self.shutters.iter().any(|shutter| shutter.is_open) {
+            self.copy.begin(now, plant);
         }
     }
 
@@ -87,7 +82,7 @@ impl Exposures {
             }
         }
         if self.shutters.iter().all(|shutter| !shutter.is_open) {
-            self.copy = None;
+            self.copy.end();
         }
     }
 }
@@ -118,7 +113,7 @@ impl Exposures {
         record: &mut dyn Record,
     ) -> Result<(), SimulationError> {
         self.accumulate_mean(now, plant, record)?;
-        self.copy = None;
+        self.copy.end();
         Ok(())
     }
 
@@ -130,22 +125,14 @@ impl Exposures {
         plant: &Plant,
         record: &mut dyn Record,
     ) -> Result<(), SimulationError> {
-        let Self { shutters, copy, averaged } = self;
-        let Some(copy) = copy.as_mut().filter(|_| now > *averaged) else { return Ok(()) };
-        let from = std::mem::replace(averaged, now);
-        // The copy is at the start of the interval, the plant of the run at its end.
-        let fastest = copy.fastest_frequency().max(plant.fastest_frequency());
-        for (t, lasts) in quadrature::nodes(now.since(from).seconds(), fastest) {
-            let at = from + Span::from_seconds(t);
-            copy.advance(at, record)?;
-            copy.evaluate(at)?;
+        let Self { shutters, copy } = self;
+        copy.average(now, plant, record, |copy, _, lasts| {
             for shutter in shutters.iter_mut().filter(|shutter| shutter.is_open) {
                 let truth = copy.truth_at_sensor(shutter.sensor);
                 if let Some(attitude) = truth.orientation.rotated_by(truth.sensor_angles()).attitude() {
                     shutter.exposure.add(attitude, lasts);
                 }
             }
-        }
-        Ok(())
+        })
     }
 }

@@ -12,10 +12,12 @@ mod controllers;
 mod error;
 mod estimation;
 mod exposures;
+mod fine_mirrors;
 mod guidance;
 mod loads;
 mod mode_sky;
 mod motion_limits;
+mod mounted_lines;
 mod objective;
 mod operation;
 mod own_disturbance;
@@ -28,6 +30,7 @@ pub mod relay_setup;
 mod requirement_monitors;
 mod run_to;
 mod run_view;
+mod segment_copy;
 mod sensor_schedule;
 mod sensors;
 mod start_finish;
@@ -45,7 +48,7 @@ use flexsc_scenario::Scenario;
 use relay_setup::RunSetup;
 use requirement_monitors::RequirementMonitors;
 
-pub use control_trace::{ControlCall, ControlDecision, ModeTrial, SensorSample, UnloadingCall};
+pub use control_trace::{ControlCall, ControlDecision, KnownRotors, ModeTrial, SensorSample, UnloadingCall};
 pub use error::SimulationError;
 pub use plant::AppliedTorque;
 pub use quantities::{QuantityField, QuantityGroup};
@@ -55,6 +58,7 @@ pub use telemetry::{SensorTelemetry, Telemetry, TelemetryLayout, TelemetrySensor
 use clock::Clock;
 use controllers::ControlLaws;
 use estimation::Estimation;
+use fine_mirrors::FineMirrors;
 use guidance::Guidance;
 use loads::Loads;
 use operation::Operation;
@@ -74,6 +78,7 @@ pub struct Simulation {
     laws: ControlLaws,
     operation: Operation,
     loads: Loads,
+    mirrors: FineMirrors,
     recorder: Recorder,
     requirements: RequirementMonitors,
     /// True if the scenario has custom parts.
@@ -96,6 +101,7 @@ impl Simulation {
             laws: ControlLaws::new(scenario, seed),
             operation,
             loads: Loads::new(scenario, seed),
+            mirrors: FineMirrors::new(scenario, seed),
             recorder: Recorder::new(scenario, &guidance, run),
             guidance,
             has_custom_parts: scenario.has_custom_parts(),
@@ -131,6 +137,7 @@ impl Simulation {
         let blinded = self.sensors.next_blinding([now, due.min(until)], &self.plant, &self.loads);
         let mut next = blinded.unwrap_or(due);
         self.sensors.copy_plant(now, &self.plant);
+        self.mirrors.copy_plant(now, &self.plant);
         if let Some(at) = self.plant.advance(next.min(until), record)? {
             next = at;
             self.clock.count_bearing_event(at)?;
@@ -155,6 +162,7 @@ impl Simulation {
         let next = or_earlier(next, self.sensors.next_event());
         let next = or_earlier(next, self.estimation.window_closes());
         let next = or_earlier(next, self.clock.next_cycle());
+        let next = or_earlier(next, self.mirrors.due());
         or_earlier(next, self.recorder.due())
     }
 
@@ -174,6 +182,7 @@ impl Simulation {
         // 2. Star trackers that bright bodies blind, exposures that end, and the target of this instant.
         self.sensors.update_blinding(now);
         self.sensors.update_exposures(now, &self.plant, record)?;
+        self.mirrors.update(now, &self.plant, &self.guidance, record)?;
         let is_sampled = self.sensors.sample_is_due(now);
         let event = self.laws.event(now, is_sampled);
         if is_sampled || self.clock.cycle_is_due() || self.must_decide(event) {
@@ -206,7 +215,7 @@ impl Simulation {
         if self.clock.take_bearing_event() || self.loads.due == Some(now) {
             self.end_requirement_segment();
             self.loads.set_magnetic_field(now, self.sensors.magnetic_field(self.plant.truth()));
-            self.loads.apply_due_changes(now, self.plant.truth());
+            self.loads.apply_due_changes(now, self.plant.truth(), &self.estimation.estimates);
             self.trace_unloading(now);
             self.begin_segment(record)?;
         }
@@ -273,6 +282,7 @@ impl Simulation {
         let (now, axes) = (self.clock.now(), self.estimation.axis_count());
         self.plant.record_pieces(now, &self.loads.applied, record)?;
         self.sensors.end_segment(now, &self.plant, record)?;
+        self.mirrors.end_segment();
         self.laws.objective.add_motion(now, &self.plant, &self.loads);
         self.loads.set_applied_torque();
         self.estimation.begin_segment(now, &self.plant, &self.loads);
@@ -346,18 +356,27 @@ impl Simulation {
 
     /// Returns the parts of the run for reading, and the recorder, which reads them.
     fn view(&mut self) -> (RunView<'_>, &mut Recorder) {
-        let Self { clock, plant, sensors, estimation, guidance, laws, loads, operation, recorder, .. } = self;
-        let (modes, sky) = (operation.sequence(), &**operation.sky());
-        (
-            RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads, modes, sky },
+        let Self {
+            clock,
+            plant,
+            sensors,
+            estimation,
+            guidance,
+            laws,
+            loads,
+            mirrors,
+            operation,
             recorder,
-        )
+            ..
+        } = self;
+        let (now, modes, sky) = (clock.now(), operation.sequence(), &**operation.sky());
+        (RunView { now, plant, sensors, estimation, guidance, laws, loads, mirrors, modes, sky }, recorder)
     }
 
     /// Returns the parts of the run for reading.
     fn read_view(&self) -> RunView<'_> {
-        let Self { clock, plant, sensors, estimation, guidance, laws, loads, operation, .. } = self;
-        let (modes, sky) = (operation.sequence(), &**operation.sky());
-        RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads, modes, sky }
+        let Self { clock, plant, sensors, estimation, guidance, laws, loads, mirrors, operation, .. } = self;
+        let (now, modes, sky) = (clock.now(), operation.sequence(), &**operation.sky());
+        RunView { now, plant, sensors, estimation, guidance, laws, loads, mirrors, modes, sky }
     }
 }

@@ -3,7 +3,7 @@
 use flexsc_control::actuator::{Actuator, ActuatorEvent, AxisEffort};
 use flexsc_control::law::{Command, TorqueDistribution};
 use flexsc_control::sensor::Truth;
-use flexsc_control::state_estimate::StateEstimate;
+use flexsc_control::state_estimate::{StateEstimate, estimated_rates};
 use flexsc_dynamics::frequency_drift::FrequencyDrift;
 use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
@@ -108,20 +108,21 @@ impl Loads {
         rigid: [f64; 3],
     ) {
         let actuator = &mut self.actuator;
-        let demands = self
-            .distribution
-            .demands(commands, state_estimates, || actuator.capabilities().stored_momentum(now));
+        let demands = self.distribution.demands(commands, state_estimates, |rate| {
+            actuator.capabilities().known_momentum(now, rigid, rate)
+        });
         actuator.command(now, &demands, rigid);
         self.due = earlier(self.next_change, actuator.due());
     }
 
-    /// Applies the changes of loads that are due at `now`, after the laws have decided, given the true state.
-    pub fn apply_due_changes(&mut self, now: Instant, truth: &Truth) {
+    /// Applies the changes of loads that are due at `now`, after the laws have decided, given the true state and the estimates.
+    pub fn apply_due_changes(&mut self, now: Instant, truth: &Truth, estimates: &[StateEstimate]) {
         while self.scheduled_changes.last().is_some_and(|edge| *edge <= now) {
             self.scheduled_changes.pop();
         }
         self.disturbances.iter_mut().for_each(|disturbance| disturbance.update(now));
         self.own.iter_mut().for_each(|own| own.update(now, truth));
+        self.actuator.update(now, ActuatorEvent::EstimatedRate(estimated_rates(estimates)));
         self.actuator.update(now, ActuatorEvent::Due(truth.rigid_rate));
         self.find_next_change();
     }
@@ -129,6 +130,11 @@ impl Loads {
     /// Returns the speeds of reaction wheels relative to a body with this rate (rad/s), as available to the drives.
     pub fn wheel_speeds(&self, now: Instant, rate: [f64; 3]) -> Vec<f64> {
         self.actuator.capabilities().wheel_speeds(now, rate)
+    }
+
+    /// Returns the momentum stored in the rotors (N m s, body axes) as the control system knows it, of a body with this rate (rad/s).
+    pub fn known_momentum(&self, now: Instant, rate: [f64; 3], estimates: &[StateEstimate]) -> [f64; 3] {
+        self.actuator.capabilities().known_momentum(now, rate, estimated_rates(estimates))
     }
 
     /// Sets the magnetic field in body axes (T) in the actuator, if there is one.

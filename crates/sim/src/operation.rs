@@ -205,9 +205,10 @@ impl RunView<'_> {
                 let attitude = self.estimation.origin().attitude();
                 attitude.map_or_else(Vec::new, |q| vec![q.w, q.i, q.j, q.k])
             }
-            FlightQuantity::StoredMomentum => {
-                self.loads.actuator.capabilities().stored_momentum(self.now).to_vec()
-            }
+            FlightQuantity::StoredMomentum => self
+                .loads
+                .known_momentum(self.now, self.plant.truth().rigid_rate, estimates.as_slice())
+                .to_vec(),
             FlightQuantity::WheelSpeed => self.loads.wheel_speeds(self.now, self.plant.truth().rigid_rate),
             FlightQuantity::Field => field(self.sensors.measured_field()),
             FlightQuantity::FieldRate => field(self.sensors.field_rate),

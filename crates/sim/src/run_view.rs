@@ -7,6 +7,7 @@ use flexsc_numerics::time::Instant;
 
 use super::controllers::ControlLaws;
 use super::estimation::Estimation;
+use super::fine_mirrors::FineMirrors;
 use super::guidance::Guidance;
 use super::loads::Loads;
 use super::mode_sky::ModeSky;
@@ -24,6 +25,7 @@ pub struct RunView<'a> {
     pub guidance: &'a Guidance,
     pub laws: &'a ControlLaws,
     pub loads: &'a Loads,
+    pub mirrors: &'a FineMirrors,
     /// Sequence of the modes of operation; `None` without modes.
     pub modes: Option<&'a ModeSequence>,
     /// Sunlight and elevations that conditions read.

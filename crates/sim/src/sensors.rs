@@ -4,6 +4,8 @@ use flexsc_control::custom::PartError;
 use flexsc_control::part::{Part, ReportContext};
 use flexsc_control::sensor::{Orientation, Reading, SensorKind, Truth};
 use flexsc_flight::b_dot::FieldRate;
+use flexsc_flight::ticks::Ticks;
+use flexsc_flight::vector3::Vector3;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::flight_types::{from_vector3, to_vector3};
 use flexsc_numerics::random::Seed;
@@ -53,7 +55,7 @@ impl Sensors {
         let (study, axes) = (&scenario.study, scenario.study.axes.len());
         let all = &scenario.sensor;
         let rates = all.iter().any(|sensor| sensor.rate_noise(0).is_some());
-        let field_source = all.iter().position(|sensor| sensor.measures_field());
+        let field_source = all.field_source(study.law_period);
         let due = |(index, sensor): (usize, &SensorKind)| {
             let period = if all.motion_sensors() == 1 && sensor.measures_motion() {
                 study.sample_period
@@ -66,7 +68,7 @@ impl Sensors {
                 period,
                 next: period.map(|period| Instant::START + period),
                 last: None,
-                is_field_source: field_source == Some(index),
+                is_field_source: field_source.is_some_and(|(source, _)| source == index),
                 derives_rates: all.provides_attitude(index) && !rates,
             }
         };
@@ -76,7 +78,7 @@ impl Sensors {
             reading: None,
             measured: vec![[0.0; 2]; axes],
             last_angles: None,
-            field: FieldRate::NONE,
+            field: FieldRate::new(field_source.map_or(Ticks::default(), |(_, most_age)| most_age)),
             field_rate: None,
             next: sensors.iter().filter_map(|due| due.next).min(),
             schedules: sensors,
@@ -268,6 +270,17 @@ impl Sensors {
         }
         let reading = self.new_readings[index].or(due.last)?;
         Some((self.last_readings[index], reading))
+    }
+
+    /// Returns the rate of change of the measured field after its last reading (T/s); `None` before the first.
+    pub fn last_field_rate(&self) -> Option<Vector3> {
+        self.field.has_field.then_some(self.field.rate)
+    }
+
+    /// Returns true if the rate of change of the measured field is unknown, because the last reading is too old.
+    #[inline]
+    pub fn field_is_stale(&self, now: Instant) -> bool {
+        self.field.has_field && self.field.is_stale(now.ticks())
     }
 
     /// Returns the last measured magnetic field in body axes (T).

@@ -14,7 +14,7 @@ impl Simulation {
         let estimates = &mut self.estimation.estimates;
         self.laws.decide_uncounted(now, Event::Start, &self.guidance, estimates, &speeds);
         self.command_actuator();
-        self.loads.apply_due_changes(now, self.plant.truth());
+        self.loads.apply_due_changes(now, self.plant.truth(), &self.estimation.estimates);
         self.trace_unloading(now);
         self.begin_segment(record)?;
         if let Some(search) = self.estimation.search().or(self.laws.objective.search()) {

@@ -1,8 +1,9 @@
 //! Telemetry of a run at an instant: the last reading of each sensor, and what the laws would read, for control by another
 //! program.
 
+use flexsc_control::estimator::attitude::SensorRole;
 use flexsc_control::quantity::total_width;
-use flexsc_control::sensor::MeasuredQuantity;
+use flexsc_control::sensor::{MeasuredQuantity, Reading};
 use flexsc_numerics::time::Instant;
 
 use super::quantities::QuantityField;
@@ -57,7 +58,11 @@ impl TelemetryLayout {
                 0 => kind.to_owned(),
                 earlier => format!("{kind}_{}", earlier + 1),
             };
-            let fields = sensor.measured_quantities(scenario.sensor.provides_attitude(index), axes);
+            let mut fields = sensor.measured_quantities(scenario.sensor.provides_attitude(index), axes);
+            let corrects = scenario.study.attitude.as_ref().and_then(|setup| setup.roles.get(index));
+            if sensor.measures_vector() && matches!(corrects, Some(SensorRole::Corrects { .. })) {
+                fields.extend(fields.first().map(|vector| MeasuredQuantity::reference(vector.unit)));
+            }
             (!fields.is_empty()).then_some(TelemetrySensor { group, index, fields })
         });
         Self { sensors: sensors.collect(), law_inputs: run.quantity_fields(scenario, false) }
@@ -123,6 +128,9 @@ impl RunView<'_> {
     fn sensor_telemetry(&self, sensor: &TelemetrySensor) -> SensorTelemetry {
         match self.sensors.latest(sensor.index, self.now, self.plant) {
             Some((at, reading)) => {
+                let estimator = &self.estimation.estimator;
+                let sight = reading.sight.map(|sight| estimator.with_reference(sensor.index, sight, at));
+                let reading = Reading { sight, ..reading };
                 let values = sensor.fields.iter().flat_map(|field| field.values(&reading)).collect();
                 SensorTelemetry { at: Some(at), values }
             }

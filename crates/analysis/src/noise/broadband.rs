@@ -13,8 +13,9 @@ use flexsc_spacecraft::load_density::LoadDensity;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::lines::{LineLoop, SpectralLine};
+use super::lines::LineLoop;
 use super::source_motion::SourceMotion;
+use super::spectral_line::SpectralLine;
 use super::transfer::{LoadResponse, LoopTransfer};
 
 /// Lowest frequency, relative to the lowest corner and resonance, and highest, relative to the highest.
@@ -119,16 +120,22 @@ impl Integral<'_> {
         let mut sum = SourcePower { lines: Vec::new(), density: 0.0, sampled: 0.0 };
         for (place, column) in &source.parts {
             let (own, size) = (&responses[*column], densities[*place]);
-            sum.sampled += size * own.sampled[output];
-            let powers = own.amplitudes[output].iter().map(|amplitude| size * amplitude.norm_sqr());
-            for (line, (frequency, power)) in own.frequencies.iter().zip(powers).enumerate() {
+            let lines = self.transfer.behind_mirror(output, own.lines[output].clone());
+            sum.sampled += size
+                * if self.transfer.has_mirror(output) {
+                    lines.iter().map(|(_, amplitude)| amplitude.norm_sqr()).sum()
+                } else {
+                    own.sampled[output]
+                };
+            sum.density += lines.last().map_or(0.0, |(_, direct)| size * direct.norm_sqr());
+            for (line, (at, amplitude)) in lines.into_iter().enumerate() {
+                let (at, power) = (at.abs(), size * amplitude.norm_sqr());
                 match sum.lines.get_mut(line) {
-                    Some(known) => known.1 += power,
-                    None => sum.lines.push((*frequency, power)),
+                    Some(known) if known.0 == at => known.1 += power,
+                    _ => sum.lines.push((at, power)),
                 }
             }
         }
-        sum.density = sum.lines.last().map_or(0.0, |direct| direct.1);
         sum
     }
 

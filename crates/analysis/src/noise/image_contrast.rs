@@ -12,8 +12,8 @@ use flexsc_numerics::quadrature::nodes;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::lines::SpectralLine;
 use super::noisy_loop::NoisyLoop;
+use super::spectral_line::SpectralLine;
 use super::windows::{Functional, j0};
 
 /// Harmonics of the fastest motion that the contrast over an exposure contains.

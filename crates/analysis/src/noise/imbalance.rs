@@ -7,13 +7,15 @@ use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::inverse::inverse_3x3;
 use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::scalar_search::resonance;
 use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::image_contrast::ImageBlur;
-use super::lines::{LineLoop, OutputLines, SineLoad, SpectralLine};
-use super::speed_grid::{ResonantSpeed, resonant_speeds};
+use super::lines::LineLoop;
+use super::spectral_line::{OutputLines, SineLoad, SpectralLine};
+use super::speed_grid::{ResonantSpeed, resonant_speeds, whirl_speeds};
 use super::window_rms::WindowRms;
 use super::windows::Window;
 use flexsc_scenario::Scenario;
@@ -68,6 +70,9 @@ struct WheelHarmonic {
     order: f64,
     load: SineLoad,
 }
+
+/// Largest number of maxima over the speed that are found exactly, of each output.
+const MOST_MAXIMA: usize = 12;
 
 impl WheelSpectrum {
     /// Returns the spectrum with the indices of its lines over windows: each line has its weight.
@@ -151,8 +156,13 @@ impl WheelImbalance {
             let bearings = wheels.bearings(body).map_err(|fault| fault.within(&member.key))?;
             let mut harmonics = Vec::new();
             for (wheel, bearing) in bearings.iter().enumerate() {
+                let mut carried = scenario.study.carried_rotors.iter();
+                let is_backward = carried.any(|own| own.wheel == wheel && own.speed < 0.0);
                 for line in &bearing.lines {
-                    let load = load(body, line);
+                    let mut load = load(body, line);
+                    if is_backward {
+                        load.sine.neg_mut();
+                    }
                     harmonics.push(WheelHarmonic { wheel: wheel + 1, order: line.order, load });
                 }
             }
@@ -199,13 +209,13 @@ impl WheelImbalance {
         lines: &LineLoop<'_>,
         outputs: &[usize],
     ) -> Result<Option<WheelSpectrum>, ConfigError> {
-        let Some(largest) = self.largest_speed else { return Ok(None) };
-        let part = |k: u32| LOWEST + (1.0 - LOWEST) * f64::from(k) / f64::from(SPEEDS - 1);
-        let steps: Vec<f64> = (0..SPEEDS).map(|k| largest * part(k)).collect();
-        let orders: Vec<f64> =
-            self.harmonics.chunk_by(|a, b| a.order == b.order).map(|same| same[0].order).collect();
-        let range = [steps[0], largest];
-        let resonant = resonant_speeds(&lines.parts, &orders, range, steps[1] - steps[0])?;
+        let Some((steps, range)) = self.steps() else { return Ok(None) };
+        let whirls = !lines.parts.scenario.study.carried_rotors.is_empty();
+        let orders = self.orders();
+        let mut resonant = resonant_speeds(&lines.parts, &orders, range, steps[1] - steps[0])?;
+        if whirls {
+            resonant.extend(whirl_speeds(lines.parts.scenario, &orders, range, steps[1] - steps[0])?);
+        }
         let own = self.spectrum(lines, &steps, outputs)?;
         let examined: Vec<f64> = resonant.iter().map(|peak| peak.speed).collect();
         let tops = self.spectrum(lines, &examined, outputs)?;
@@ -229,7 +239,80 @@ impl WheelImbalance {
         flanks.retain(|speed| (range[0]..range[1]).contains(speed));
         let flanks = self.spectrum(lines, &flanks, outputs)?;
         let tops = tops.selected(&risen);
-        Ok(Some(own.merged(tops).merged(flanks)))
+        let found = own.merged(tops).merged(flanks);
+        Ok(Some(if whirls { self.with_maxima(lines, found, outputs)? } else { found }))
+    }
+
+    /// Computes the lines of some outputs at equal steps, where harmonics meet modes of the body, and at the largest maxima between;
+    /// `None` if the scenario gives no largest speed. Where aliases meet modes is not looked for.
+    ///
+    /// # Errors
+    /// See [`LineLoop::lines`].
+    pub fn largest_spectrum(
+        &self,
+        lines: &LineLoop<'_>,
+        outputs: &[usize],
+    ) -> Result<Option<WheelSpectrum>, ConfigError> {
+        let Some((steps, range)) = self.steps() else { return Ok(None) };
+        let met = whirl_speeds(lines.parts.scenario, &self.orders(), range, steps[1] - steps[0])?;
+        let met: Vec<f64> = met.into_iter().map(|peak| peak.speed).collect();
+        let found = self.spectrum(lines, &steps, outputs)?.merged(self.spectrum(lines, &met, outputs)?);
+        self.with_maxima(lines, found, outputs).map(Some)
+    }
+
+    /// Returns equal steps of the speed, and their range (rad/s), if the scenario gives a largest speed.
+    fn steps(&self) -> Option<(Vec<f64>, [f64; 2])> {
+        let largest = self.largest_speed?;
+        let part = |k: u32| LOWEST + (1.0 - LOWEST) * f64::from(k) / f64::from(SPEEDS - 1);
+        let steps: Vec<f64> = (0..SPEEDS).map(|k| largest * part(k)).collect();
+        Some((steps.clone(), [steps[0], largest]))
+    }
+
+    /// Returns the orders of all harmonics.
+    fn orders(&self) -> Vec<f64> {
+        self.harmonics.chunk_by(|a, b| a.order == b.order).map(|same| same[0].order).collect()
+    }
+
+    /// Returns a spectrum with the largest maxima of the rms of each output between its speeds.
+    fn with_maxima(
+        &self,
+        lines: &LineLoop<'_>,
+        spectrum: WheelSpectrum,
+        outputs: &[usize],
+    ) -> Result<WheelSpectrum, ConfigError> {
+        let exact = self.spectrum(lines, &self.maxima(lines, &spectrum, outputs)?, outputs)?;
+        Ok(spectrum.merged(exact))
+    }
+
+    /// Finds the speeds of the largest maxima of the rms of each output between those of a spectrum.
+    fn maxima(
+        &self,
+        lines: &LineLoop<'_>,
+        spectrum: &WheelSpectrum,
+        outputs: &[usize],
+    ) -> Result<Vec<f64>, ConfigError> {
+        let mut tops: Vec<(usize, [f64; 3], [f64; 3])> = Vec::new();
+        for (output, rms) in spectrum.rms.iter().enumerate() {
+            let is_top = |place: &usize| rms[*place] > rms[place - 1] && rms[*place] >= rms[place + 1];
+            let mut own: Vec<usize> = (1..rms.len().max(1) - 1).filter(is_top).collect();
+            own.sort_by(|a, b| rms[*b].total_cmp(&rms[*a]));
+            let around = |place: usize, values: &[f64]| [values[place - 1], values[place], values[place + 1]];
+            let top = |place| (outputs[output], around(place, &spectrum.speed_rad_s), around(place, rms));
+            tops.extend(own.into_iter().take(MOST_MAXIMA).map(top));
+        }
+        let find = |(output, speeds, values): &(usize, [f64; 3], [f64; 3])| {
+            let mut fault = None;
+            let value = |speed: f64| match self.spectrum(lines, &[speed], &[*output]) {
+                Ok(spectrum) => spectrum.rms[0][0],
+                Err(why) => {
+                    fault.get_or_insert(why);
+                    f64::NAN
+                }
+            };
+            let speed = resonance(value, *speeds, *values);
+            fault.map_or(Ok(speed), Err)
+        };
+        tops.par_iter().map(find).collect()
     }
 
     /// Computes the lines of some outputs at speeds of the wheels (rad/s): each harmonic of each wheel alone.
@@ -243,6 +326,8 @@ impl WheelImbalance {
         outputs: &[usize],
     ) -> Result<Vec<WheelLines>, ConfigError> {
         let at = |speed: &f64| -> Result<Vec<WheelLines>, ConfigError> {
+            let own = lines.at_wheel_speed(*speed)?;
+            let lines = own.as_ref().unwrap_or(lines);
             let mut found = Vec::new();
             for same in self.harmonics.chunk_by(|a, b| a.order == b.order) {
                 let strength = speed * speed;

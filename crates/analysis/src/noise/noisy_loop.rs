@@ -6,11 +6,13 @@ use flexsc_formats::document::ConfigError;
 use nalgebra::{Complex, DMatrix};
 
 use super::covariance::DoublingSeries;
+use super::mirror_states::with_mirrors;
 use super::motion::Motion;
 use super::output::outputs;
 use super::period_rows::PeriodRows;
 use super::source::sources;
 use crate::eigenvalues::eigenvalues;
+use crate::fine_mirror::{MirrorLoop, mirrors};
 use crate::linear_model::Signal;
 use crate::margins::UnstableLoop;
 use crate::margins::poles::require_stable;
@@ -100,7 +102,11 @@ impl NoisyLoop {
     /// # Errors
     /// See [`Self::from_scenario`].
     pub(crate) fn from_parts(parts: &LoopParts<'_>) -> Result<Self, NoiseError> {
-        let spectral_radius = stable_radius(parts)?;
+        let spectral_radius = stable_radius(&OpenLoop::from_parts(parts)?)?;
+        for (line, mirror) in mirrors(parts.scenario) {
+            stable_radius(&MirrorLoop::new(mirror).open_loop(line))?;
+        }
+        let parts = &with_mirrors(parts);
         let sources = sources(parts)?;
         let PeriodRows { a, g, pieces, period, step, drawn_by, .. } = PeriodRows::new(parts, &sources)?;
         let (outputs, rows) = outputs(parts);
@@ -277,12 +283,11 @@ impl NoisyLoop {
     }
 }
 
-/// Returns the spectral radius of the closed loop.
-fn stable_radius(parts: &LoopParts<'_>) -> Result<f64, NoiseError> {
-    let opened = OpenLoop::from_parts(parts)?;
+/// Returns the spectral radius of a loop when it is closed.
+pub(super) fn stable_radius(opened: &OpenLoop) -> Result<f64, NoiseError> {
     let first = opened.signals.first().map_or("", |signal| &signal.name);
     let failed = || NoiseError::Unstable(UnstableLoop::with_unknown_poles(first));
     let closed = opened.transfer.sensitivity().ok_or_else(failed)?;
     let poles = eigenvalues(&closed.a).ok_or_else(failed)?;
-    require_stable(&opened, &closed.a, &poles).map_err(NoiseError::Unstable)
+    require_stable(opened, &closed.a, &poles).map_err(NoiseError::Unstable)
 }

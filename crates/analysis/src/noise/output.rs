@@ -1,28 +1,40 @@
 //! Outputs of a loop: angles, rates, pointing errors, coordinates of the body, lines of sight, and commands.
 
-use flexsc_numerics::attitude::AXES;
+use flexsc_numerics::attitude::{AXES, Vector};
 use nalgebra::RowDVector;
 
+use super::mirror_states::line_row;
 use super::motion::OutputRow;
 use crate::linear_model::Signal;
 use crate::open_loop::LoopParts;
-use flexsc_scenario::{LineSensitivity, Scenario};
+use flexsc_scenario::Scenario;
 
 /// Returns the outputs of a loop, with rows over the states of the body.
 pub fn outputs(parts: &LoopParts<'_>) -> (Vec<Signal>, Vec<OutputRow>) {
     let model = &parts.body.model;
     let order = model.states.len();
     let measured = model.outputs.len() - order;
+    let whole = parts.body.a.nrows();
     let mut all: Vec<(Signal, OutputRow)> = Vec::new();
-    let row = |place: usize| OutputRow::Body(RowDVector::from_row_slice(&model.c[place]));
+    let row = |place: usize| {
+        OutputRow::Body(RowDVector::from_row_slice(&model.c[place]).resize_horizontally(whole, 0.0))
+    };
     all.extend((0..measured).map(|place| (model.outputs[place].clone(), row(place))));
     all.extend(
         parts.signals().into_iter().enumerate().map(|(axis, signal)| (signal, OutputRow::Command(axis))),
     );
-    all.extend(error_rows(parts.scenario, order));
-    all.extend(line_of_sight_rows(parts.scenario, order));
+    all.extend(error_rows(parts.scenario, whole));
+    all.extend(line_of_line_rows(parts, whole));
     all.extend((measured..model.outputs.len()).map(|place| (model.outputs[place].clone(), row(place))));
     all.into_iter().unzip()
+}
+
+/// Returns the index of the output of a name, or an error with the names that there are.
+pub fn output_index(outputs: &[Signal], name: &str) -> Result<usize, String> {
+    outputs.iter().position(|output| output.name == name).ok_or_else(|| {
+        let all: Vec<&str> = outputs.iter().map(|output| output.name.as_str()).collect();
+        format!("signal must be `all` or some of {}, got {name}", all.join(", "))
+    })
 }
 
 /// Returns the pointing error about each of three axes: the rotation of the hub, or, where the modes do not act back on
@@ -39,22 +51,33 @@ fn error_rows(scenario: &Scenario, order: usize) -> Vec<(Signal, OutputRow)> {
     AXES.iter().enumerate().map(row).collect()
 }
 
-/// Returns the error of each line of sight about the axes of the body.
-fn line_of_sight_rows(scenario: &Scenario, order: usize) -> Vec<(Signal, OutputRow)> {
+/// Returns the error of each line of sight about the axes of the body, of one with a mirror also before the mirror, and the angle
+/// of the mirror. Where a mirror is not among the states of the body, all three have the row before it.
+fn line_of_line_rows(parts: &LoopParts<'_>, order: usize) -> Vec<(Signal, OutputRow)> {
+    let scenario = parts.scenario;
     let Some(body) = scenario.model.three_axis() else { return Vec::new() };
     let mut all = Vec::new();
     for (index, line) in scenario.line_of_sight.iter().enumerate() {
-        let LineSensitivity { rigid, modes } = line.sensitivity(body);
+        let sensitivity = line.sensitivity(body);
+        let states = parts.mirrors.iter().find(|own| own.line == index);
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            let mut row = RowDVector::zeros(order);
-            row.columns_mut(0, AXES.len()).copy_from(&rigid.row(axis));
-            for (mode, own) in modes.iter().enumerate() {
-                row[6 + 2 * mode] = own[axis];
-            }
+            let about = Vector::ith(axis, 1.0);
+            let row = line_row(&sensitivity, &about, order);
             // A line along an axis has no error about it.
-            if row.amax() > 1e-12 {
-                let name = format!("line_of_sight{index}_{name}");
+            if row.amax() <= 1e-12 {
+                continue;
+            }
+            let mut add = |name: String, row: RowDVector<f64>| {
                 all.push((Signal { name, unit: "rad".to_owned() }, OutputRow::Body(row)));
+            };
+            if line.mirror.is_some() {
+                let angle = states.map_or_else(|| row.clone(), |states| states.angle_row(&about, order));
+                let left = if states.is_some() { &row - &angle } else { row.clone() };
+                add(format!("line_of_sight{index}_{name}"), left);
+                add(format!("line_of_sight{index}_{name}_before_mirror"), row);
+                add(format!("mirror{index}_{name}"), angle);
+            } else {
+                add(format!("line_of_sight{index}_{name}"), row);
             }
         }
     }

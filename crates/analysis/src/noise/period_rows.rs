@@ -4,16 +4,17 @@ use std::collections::BTreeMap;
 
 use flexsc_control::linear_block::LinearBlock;
 use flexsc_formats::document::ConfigError;
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 use super::schedule::{Draws, Schedule};
 use super::source::{NoiseEntry, NoiseSource};
+use crate::margins::frequency_response::unit_circle;
+use crate::open_loop::LoopParts;
 use crate::open_loop::attitude_rows::{AttitudeRows, SensorErrors, seconds};
 use crate::open_loop::block_matrices::stacked;
 use crate::open_loop::multi_rate::read_states;
-use crate::open_loop::sampling::held;
+use crate::open_loop::sampling::{HeldMotion, held};
 use crate::open_loop::uniform_rate::Controller;
-use crate::open_loop::{BodyMatrices, LoopParts};
 
 /// Part of a period in which the torques are constant.
 #[derive(Clone, Debug)]
@@ -45,10 +46,40 @@ pub struct PeriodRows {
     pub drawn_by: Vec<usize>,
     /// States that are kept, as indices: those of the body are the first.
     pub kept: Vec<usize>,
+    /// Motions of the body over lengths of pieces (fs).
+    flows: BTreeMap<i64, HeldMotion>,
 }
 
-/// Flow of a body over a time (fs): its states after it, per state before and per constant torque.
-pub(super) type Flow<'a> = &'a dyn Fn(&BodyMatrices, i64) -> (DMatrix<f64>, DMatrix<f64>);
+/// Motion of a body under loads of one frequency without torques: amplitudes exp(j w t) of its states, a column for each load. Rows
+/// over it have two columns for each, the real and the imaginary part.
+pub struct ForcedMotion {
+    pub amplitudes: DMatrix<Complex<f64>>,
+    /// Frequency (rad/s).
+    pub frequency: f64,
+}
+
+impl ForcedMotion {
+    /// Returns the states at a time (fs).
+    fn at(&self, time: i64) -> DMatrix<f64> {
+        let turn = unit_circle(self.frequency * seconds(time));
+        split(&(&self.amplitudes * turn))
+    }
+}
+
+/// Returns the real and the imaginary part of each column, side by side.
+fn split(matrix: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
+    DMatrix::from_fn(matrix.nrows(), 2 * matrix.ncols(), |row, column| {
+        let value = matrix[(row, column / 2)];
+        if column % 2 == 0 { value.re } else { value.im }
+    })
+}
+
+/// Returns the columns of which each pair is a real and an imaginary part.
+pub fn joined(matrix: &DMatrix<f64>) -> DMatrix<Complex<f64>> {
+    DMatrix::from_fn(matrix.nrows(), matrix.ncols() / 2, |row, column| {
+        Complex::new(matrix[(row, 2 * column)], matrix[(row, 2 * column + 1)])
+    })
+}
 
 /// Sensors, estimator and law.
 enum ControllerRows {
@@ -56,6 +87,18 @@ enum ControllerRows {
     Uniform { controller: Controller, state: DMatrix<f64> },
     /// Attitude filter with sensors of other periods.
     Filter { filter: Box<AttitudeRows>, law: LinearBlock, state: DMatrix<f64> },
+}
+
+/// Parts of a loop before its start, and the numbers of its states: of the body, of the controller, of each command, and of all.
+struct LoopSetup {
+    controller: ControllerRows,
+    /// Times (fs) at which something happens.
+    instants: Vec<i64>,
+    order: usize,
+    known: Vec<usize>,
+    axes: usize,
+    late: usize,
+    size: usize,
 }
 
 /// State of the loop during a period, as rows.
@@ -89,24 +132,48 @@ impl PeriodRows {
         sources: &[NoiseSource],
         drivers: &[usize],
     ) -> Result<Self, ConfigError> {
-        let exact = |body: &BodyMatrices, length: i64| held(&body.a, &body.b, seconds(length));
-        Self::with_flow(parts, sources, drivers, &exact)
+        let (schedule, draws, setup) = Self::setup(parts, sources)?;
+        let size = setup.size;
+        let identity = DMatrix::identity(size, size + draws.count(schedule.period));
+        let mut flows = BTreeMap::new();
+        for pair in setup.instants.windows(2) {
+            let length = pair[1] - pair[0];
+            flows.entry(length).or_insert_with(|| held(&parts.body.a, &parts.body.b, seconds(length)));
+        }
+        let (mut rows, instants) = LoopRows::start(&identity, setup, sources);
+        let pieces = rows.run(parts, (&schedule, &instants, &flows), &draws, (size, None));
+        let found = Self::trimmed(&rows.state(), pieces, (size, drivers), &schedule, &draws);
+        Ok(Self { flows, ..found })
     }
 
-    /// Goes through a period of a driven loop whose body has a known flow.
+    /// Goes through a period from the states of a forced motion; returns the kept states at the end, and the pieces.
     ///
     /// # Errors
     /// See [`Self::new`].
-    pub fn with_flow(
+    pub fn forced(
+        &self,
         parts: &LoopParts<'_>,
-        sources: &[NoiseSource],
-        drivers: &[usize],
-        flow: Flow<'_>,
-    ) -> Result<Self, ConfigError> {
+        motion: &ForcedMotion,
+    ) -> Result<(DMatrix<f64>, Vec<Piece>), ConfigError> {
+        let (schedule, draws, setup) = Self::setup(parts, &[])?;
+        let mut start = motion.at(0);
+        let size = setup.size;
+        start.resize_vertically_mut(size, 0.0);
+        let (mut rows, instants) = LoopRows::start(&start, setup, &[]);
+        let pieces = rows.run(parts, (&schedule, &instants, &self.flows), &draws, (size, Some(motion)));
+        Ok((rows.state().select_rows(&self.kept), pieces))
+    }
+
+    /// Returns the times of a loop, its draws, and its parts before the start.
+    fn setup<'s>(
+        parts: &LoopParts<'_>,
+        sources: &'s [NoiseSource],
+    ) -> Result<(Schedule, Draws<'s>, LoopSetup), ConfigError> {
         let order = parts.body.a.nrows();
         let filter = parts.parts.attitude.as_ref().map(|filter| AttitudeRows::new(filter, order));
         let schedule = Schedule::new(parts, filter.as_ref(), sources)?;
         let draws = Draws::new(sources, schedule.period);
+        let instants = schedule.instants(filter.as_ref(), sources);
         let mut start = Vec::new();
         let controller = if let Some(filter) = filter {
             start.push(3 * filter.state_patterns().len());
@@ -123,10 +190,8 @@ impl PeriodRows {
         let late = usize::try_from(schedule.delay / schedule.step).unwrap_or(0) + 1;
         let memory: usize = sources.iter().map(|source| source.entry.memory()).sum();
         let size = order + known + axes * (1 + late) + memory;
-        let identity = DMatrix::identity(size, size + draws.count(schedule.period));
-        let mut rows = LoopRows::start(&identity, controller, (order, &start), (axes, late), sources);
-        let pieces = rows.run(parts, (&schedule, flow), &draws, size);
-        Ok(Self::trimmed(&rows.state(), pieces, (size, drivers), &schedule, &draws))
+        let setup = LoopSetup { controller, instants, order, known: start, axes, late, size };
+        Ok((schedule, draws, setup))
     }
 
     /// Returns the motion without states that nothing depends on, or that no draw reaches.
@@ -169,6 +234,7 @@ impl PeriodRows {
             step: schedule.step,
             drawn_by: draws.drawn_by(schedule.period),
             kept,
+            flows: BTreeMap::new(),
         }
     }
 }
@@ -189,14 +255,9 @@ fn add(sum: &mut Option<DMatrix<f64>>, rows: DMatrix<f64>) {
 }
 
 impl LoopRows {
-    /// Splits the rows of the states at the start.
-    fn start(
-        rows: &DMatrix<f64>,
-        mut controller: ControllerRows,
-        (order, known): (usize, &[usize]),
-        (axes, late): (usize, usize),
-        sources: &[NoiseSource],
-    ) -> Self {
+    /// Splits the rows of the states at the start; returns the times of the period too.
+    fn start(rows: &DMatrix<f64>, setup: LoopSetup, sources: &[NoiseSource]) -> (Self, Vec<i64>) {
+        let LoopSetup { mut controller, instants, order, known, axes, late, .. } = setup;
         let mut next = 0;
         let mut take = |count: usize| {
             next += count;
@@ -214,7 +275,7 @@ impl LoopRows {
         let waiting = (0..late).map(|_| take(axes)).collect();
         let memory = sources.iter().map(|source| take(source.entry.memory())).collect();
         let command = DMatrix::zeros(axes, rows.ncols());
-        Self { body, controller, acting, waiting, memory, command }
+        (Self { body, controller, acting, waiting, memory, command }, instants)
     }
 
     /// Returns the rows of all states.
@@ -265,9 +326,24 @@ impl LoopRows {
                 NoiseEntry::Torque { deviation, .. } => {
                     self.memory[index] = drawn(&DMatrix::from_element(1, 1, *deviation));
                 }
+                NoiseEntry::Mirror { .. } => {}
             }
         }
         (errors, command)
+    }
+
+    /// Ends the exposures of fine mirrors that end at a time (fs).
+    fn end_exposures(&mut self, parts: &LoopParts<'_>, now: i64, draws: &Draws<'_>, size: usize) {
+        for own in parts.mirrors.iter().filter(|own| now % own.period == 0) {
+            let noise = draws.sources.iter().enumerate().find_map(|(index, source)| match source.entry {
+                NoiseEntry::Mirror { line, deviation } if line == own.line => {
+                    let each = DMatrix::from_diagonal_element(2, 2, deviation);
+                    Some(placed(&each, size + draws.column(index, now)?, self.body.ncols()))
+                }
+                _ => None,
+            });
+            own.end_exposure(&mut self.body, noise.as_ref());
+        }
     }
 
     /// Returns the torques: those of the commands, and those that are drawn.
@@ -311,28 +387,23 @@ impl LoopRows {
         }
     }
 
-    /// Goes through a period; the columns of the draws begin at `size`.
+    /// Goes through a period; the columns of the draws begin at `size`, or all are those of a forced motion.
     fn run(
         &mut self,
         parts: &LoopParts<'_>,
-        (schedule, flow_over): (&Schedule, Flow<'_>),
+        (schedule, instants, flows): (&Schedule, &[i64], &BTreeMap<i64, HeldMotion>),
         draws: &Draws<'_>,
-        size: usize,
+        (size, forced_motion): (usize, Option<&ForcedMotion>),
     ) -> Vec<Piece> {
-        let mut flows = BTreeMap::new();
         let gain = parts.actuators.gain;
         let late = schedule.delay % schedule.step;
-        let filter = match &self.controller {
-            ControllerRows::Filter { filter, .. } => Some(&**filter),
-            ControllerRows::Uniform { .. } => None,
-        };
-        let instants = schedule.instants(filter, draws.sources);
         let mut pieces = Vec::with_capacity(instants.len());
         for pair in instants.windows(2) {
             let (now, length) = (pair[0], pair[1] - pair[0]);
             let (errors, rounding) = self.errors(now, draws, size);
+            self.end_exposures(parts, now, draws, size);
             if let ControllerRows::Filter { filter, .. } = &mut self.controller {
-                filter.act(now, &self.body, &errors);
+                filter.act(now, &mut self.body, &errors);
             }
             if now % schedule.step == 0 {
                 self.command = self.sample(parts, now, &errors);
@@ -349,8 +420,14 @@ impl LoopRows {
                 self.acting = next * gain;
             }
             let torque = self.torque(draws.sources);
-            let (flow, forced) = flows.entry(length).or_insert_with(|| flow_over(&parts.body, length));
-            let after = &*flow * &self.body + &*forced * &torque;
+            let (flow, forced) = &flows[&length];
+            let after = match forced_motion {
+                None => flow * &self.body + forced * &torque,
+                Some(motion) => {
+                    let free = &self.body - motion.at(now);
+                    flow * free + forced * &torque + motion.at(now + length)
+                }
+            };
             let body = std::mem::replace(&mut self.body, after);
             pieces.push(Piece { from: now, length, body, torque, command: self.command.clone() });
         }

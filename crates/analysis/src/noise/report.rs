@@ -12,12 +12,15 @@ use serde_json::Value as Json;
 use super::density::cumulative_rms;
 use super::image_contrast::{ImageBlur, ImageFactors};
 use super::imbalance::{WheelImbalance, WheelSpectrum};
-use super::lines::{LineLoop, SpectralLine};
+use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, NoisyLoop};
+use super::output::output_index;
 use super::source_motion::SourceMotion;
+use super::spectral_line::SpectralLine;
 use super::vibration::Vibration;
 use super::window_rms::WindowRms;
 use super::windows::Window;
+use crate::fine_mirror::MirrorSensitivity;
 use flexsc_scenario::Scenario;
 
 /// Largest number of speeds of the wheels.
@@ -86,6 +89,9 @@ pub struct NoiseReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Json>", extend("x-type" = "WheelSpectrum | None"))]
     pub wheels: Option<WheelSpectrum>,
+    /// Sensitivities of the fine mirrors of lines of sight, over frequency.
+    #[schemars(extend("x-key" = "line"))]
+    pub mirrors: Vec<MirrorSensitivity>,
 }
 
 /// Noise of an output, in its unit.
@@ -168,6 +174,7 @@ impl NoiseReport {
         if !vibration.sources.is_empty() {
             report.add_vibration(&noisy, &outputs, &vibration);
         }
+        report.mirrors = MirrorSensitivity::all(scenario);
         if let Some(pixel) = request.pixel {
             report.add_contrast(&noisy, (&outputs, &vibration), pixel).map_err(NoiseError::Request)?;
             let smear = request.smear.zip(request.window).map(|(rate, window)| rate * window.length);
@@ -309,6 +316,7 @@ impl NoiseReport {
             outputs: found,
             image: None,
             wheels: None,
+            mirrors: Vec::new(),
         })
     }
 }
@@ -321,12 +329,7 @@ fn chosen(noisy: &NoisyLoop, names: &[String]) -> Result<Vec<usize>, NoiseError>
     if names.iter().any(|name| name == "all") {
         return Ok((0..noisy.outputs.len()).collect());
     }
-    let index = |name: &String| {
-        noisy.output(name).ok_or_else(|| {
-            let all: Vec<&str> = noisy.outputs.iter().map(|output| output.name.as_str()).collect();
-            NoiseError::Request(format!("signal must be `all` or some of {}, got {name}", all.join(", ")))
-        })
-    };
+    let index = |name: &String| output_index(&noisy.outputs, name).map_err(NoiseError::Request);
     names.iter().map(index).collect()
 }
 
@@ -361,9 +364,11 @@ fn wheel_spectrum(
         Some(speeds) => Some(imbalance.spectrum(&lines, &speeds, outputs)?),
         None => imbalance.refined_spectrum(&lines, outputs)?,
     };
-    let Some(found) = found else {
-        let why = "speeds must be given: the scenario gives no largest speed of its wheels";
-        return Err(NoiseError::Request(why.to_owned()));
-    };
-    Ok(Some(found))
+    found.map(Some).ok_or_else(without_speed)
+}
+
+/// Returns the fault of wheels without a largest speed.
+pub(super) fn without_speed() -> NoiseError {
+    let why = "speeds must be given: the scenario gives no largest speed of its wheels";
+    NoiseError::Request(why.to_owned())
 }

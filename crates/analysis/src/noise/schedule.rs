@@ -15,6 +15,9 @@ const MOST_SAMPLES: i64 = 100;
 /// Largest number of draws of a source in a period.
 const MOST_DRAWS: i64 = 2000;
 
+/// Largest number of periods of a fine mirror in a period.
+const MOST_EXPOSURES: i64 = 500;
+
 /// Times of a period (fs).
 pub struct Schedule {
     /// Period of the law.
@@ -23,27 +26,8 @@ pub struct Schedule {
     pub delay: i64,
     /// Period after which the loop repeats.
     pub period: i64,
-}
-
-/// Period of a loop without noise, and of its law (fs).
-pub struct PeriodTimes {
-    /// Period after which the loop repeats.
-    pub period: i64,
-    /// Period of the law.
-    pub step: i64,
-}
-
-impl PeriodTimes {
-    /// Returns the times of a loop.
-    ///
-    /// # Errors
-    /// See [`Schedule::new`].
-    pub fn new(parts: &LoopParts<'_>) -> Result<Self, ConfigError> {
-        let order = parts.body.a.nrows();
-        let filter = parts.parts.attitude.as_ref().map(|filter| AttitudeRows::new(filter, order));
-        let Schedule { step, period, .. } = Schedule::new(parts, filter.as_ref(), &[])?;
-        Ok(Self { period, step })
-    }
+    /// Periods of fine mirrors.
+    mirrors: Vec<i64>,
 }
 
 /// First column of the draws of each source, and the source.
@@ -78,12 +62,26 @@ impl Schedule {
             };
             period = whole.ok_or_else(|| ConfigError::new(key, why()))?;
         }
+        for own in &parts.mirrors {
+            let key = format!("line_of_sight[{}].mirror.period", own.line);
+            let short = |whole: &i64| whole / step <= MOST_SAMPLES && whole / own.period <= MOST_EXPOSURES;
+            let why = || {
+                format!(
+                    "is {} s: the loop of the law and the mirror repeats only after more than {MOST_SAMPLES} samples of the law or \
+                     {MOST_EXPOSURES} exposures",
+                    seconds(own.period)
+                )
+            };
+            let whole = common_multiple(period, own.period).filter(short);
+            period = whole.ok_or_else(|| ConfigError::new(key, why()))?;
+        }
         let count = |source: &NoiseSource| source.entry.draws() as i64 * (period / source.period);
         if let Some(source) = sources.iter().find(|source| count(source) > MOST_DRAWS) {
             let why = format!("has {} draws in a period of the loop, at most {MOST_DRAWS}", count(source));
             return Err(ConfigError::new(&source.key, why));
         }
-        Ok(Self { step, delay: ticks(parts.actuators.delay), period })
+        let mirrors = parts.mirrors.iter().map(|own| own.period).collect();
+        Ok(Self { step, delay: ticks(parts.actuators.delay), period, mirrors })
     }
 
     /// Returns the instants at which something happens, from 0 to the end of the period.
@@ -94,6 +92,7 @@ impl Schedule {
         for source in sources {
             all.extend(every(source.phase, source.period));
         }
+        self.mirrors.iter().for_each(|period| all.extend(every(0, *period)));
         all.into_iter().filter(|instant| (0..=self.period).contains(instant)).collect()
     }
 }

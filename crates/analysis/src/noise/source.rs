@@ -12,6 +12,7 @@ use flexsc_numerics::time::Span;
 use flexsc_spacecraft::axes::Axis;
 use nalgebra::DMatrix;
 
+use super::mirror_states::MirrorStates;
 use crate::open_loop::LoopParts;
 use crate::open_loop::attitude_rows::{seconds, ticks};
 use flexsc_scenario::Scenario;
@@ -34,6 +35,8 @@ pub enum NoiseEntry {
     Command(DMatrix<f64>),
     /// Torque about an axis, held from draw to draw.
     Torque { axis: usize, deviation: f64 },
+    /// Mean of the guidance sensor of the fine mirror of a line of sight, about each of two axes.
+    Mirror { line: usize, deviation: f64 },
 }
 
 /// Source of noise.
@@ -71,6 +74,7 @@ impl NoiseEntry {
             }
             Self::Walk { change, .. } | Self::Wander { change, .. } => change.ncols(),
             Self::Torque { .. } => 1,
+            Self::Mirror { .. } => 2,
         }
     }
 
@@ -80,7 +84,7 @@ impl NoiseEntry {
             Self::Remainder(matrix) => matrix.nrows(),
             Self::Wander { change, .. } => change.nrows(),
             Self::Torque { .. } => 1,
-            Self::Angle(_) | Self::Rate(_) | Self::Walk { .. } | Self::Command(_) => 0,
+            Self::Angle(_) | Self::Rate(_) | Self::Walk { .. } | Self::Command(_) | Self::Mirror { .. } => 0,
         }
     }
 }
@@ -99,6 +103,7 @@ pub fn sources(parts: &LoopParts<'_>) -> Result<Vec<NoiseSource>, ConfigError> {
     }
     list.add_quanta_of_wheels(scenario, parts.law.period.leading_femtoseconds());
     list.add_disturbances(scenario);
+    list.add_mirrors(parts);
     Ok(list.found)
 }
 
@@ -155,6 +160,19 @@ impl SourceList {
             let entry = diagonal(self.axes, |_| rounding(wheel.quantum.get())).map(NoiseEntry::Command);
             let key = format!("{}.quantum", member.key);
             self.found.extend(entry.map(|entry| NoiseSource { key, entry, period, phase: 0 }));
+        }
+    }
+
+    fn add_mirrors(&mut self, parts: &LoopParts<'_>) {
+        for MirrorStates { line, mirror, period, .. } in &parts.mirrors {
+            if mirror.noise.get() > 0.0 {
+                self.found.push(NoiseSource {
+                    key: format!("line_of_sight[{line}].mirror.noise"),
+                    entry: NoiseEntry::Mirror { line: *line, deviation: mirror.noise.get() },
+                    period: *period,
+                    phase: 0,
+                });
+            }
         }
     }
 

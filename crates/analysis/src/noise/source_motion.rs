@@ -1,6 +1,6 @@
 //! Motion of an output of a loop under one machine, as lines.
 
-use super::lines::SpectralLine;
+use super::spectral_line::SpectralLine;
 
 /// Measure of the lines of an output, by its index, that is largest at the worst frequency of a machine.
 pub type Measure<'a> = &'a (dyn Fn(usize, &[SpectralLine]) -> f64 + Sync);

@@ -3,14 +3,22 @@
 //! The line of a harmonic at the frequency w excites a resonance of the closed loop, whose angle in a period T is theta, where w T =
 //! +-theta + 2 pi k. For k = 0 or the turns of a mode that is what moves, else it is an alias, far above the resonance. All are at
 //! known speeds, and narrow: steps over the speed pass most of them by.
+//!
+//! A wheel that a point of the structure carries changes the modes with its speed W: A = A0 + W A1. Its harmonic h meets one where j h W
+//! is an eigenvalue of A: W is one of (j h - A1)^-1 A0, whose imaginary part is the half width of the peak.
 
 use std::f64::consts::TAU;
 
 use flexsc_formats::document::ConfigError;
+use flexsc_scenario::Scenario;
+use nalgebra::{Complex, DMatrix};
+use rayon::prelude::*;
 
 use crate::eigenvalues::eigenvalues;
+use crate::linear_model::LinearModel;
 use crate::margins::{resonances, steady_change};
 use crate::open_loop::{LoopParts, OpenLoop};
+use crate::state_space::StateSpaceModel;
 
 /// Largest number of speeds that are examined beside the steps: those of the modes, then aliases of the lowest frequencies.
 const MOST_EXAMINED: usize = 400;
@@ -66,4 +74,52 @@ pub fn resonant_speeds(
     peaks.sort_by(|a, b| a.speed.total_cmp(&b.speed));
     peaks.dedup_by(|later, kept| later.speed - kept.speed <= APART * later.width.min(kept.width));
     Ok(peaks)
+}
+
+/// Returns the speeds between two (rad/s) at which harmonics of these orders meet modes of a scenario's body, with the whirl of its wheels,
+/// that are narrower than `step`.
+///
+/// # Errors
+/// See [`OpenLoop::from_scenario`].
+pub fn whirl_speeds(
+    scenario: &Scenario,
+    orders: &[f64],
+    [least, largest]: [f64; 2],
+    step: f64,
+) -> Result<Vec<ResonantSpeed>, ConfigError> {
+    let rates = |speed: f64| -> Result<DMatrix<f64>, ConfigError> {
+        let a = StateSpaceModel::from(LinearModel::at_wheel_speed(scenario, speed)?).matrices.a;
+        // Without the rigid angles, on which nothing depends.
+        Ok(a.view_range(3.., 3..).into_owned())
+    };
+    let constant = rates(0.0)?;
+    let growing = rates(1.0)? - &constant;
+    let order = constant.nrows();
+    let meets = |harmonic: &f64| {
+        let mut factor = growing.map(|entry| Complex::new(-entry, 0.0));
+        for place in 0..order {
+            factor[(place, place)].im += harmonic;
+        }
+        let product = factor.lu().solve(&constant.map(Complex::from));
+        // A complex matrix as a real one of twice the order, which has the conjugate eigenvalues too.
+        let real = product.map(|product| {
+            DMatrix::from_fn(2 * order, 2 * order, |row, column| {
+                let entry = product[(row % order, column % order)];
+                match (row < order, column < order) {
+                    (true, false) => -entry.im,
+                    (false, true) => entry.im,
+                    _ => entry.re,
+                }
+            })
+        });
+        let speeds = real.as_ref().and_then(eigenvalues).unwrap_or_default();
+        let peak = |speed: Complex<f64>| ResonantSpeed { speed: speed.re, width: speed.im };
+        let is_met = |peak: &ResonantSpeed| {
+            (least..=largest).contains(&peak.speed) && peak.width > 0.0 && peak.width <= 0.5 * step
+        };
+        speeds.into_iter().map(peak).filter(is_met).collect::<Vec<_>>()
+    };
+    let mut found: Vec<ResonantSpeed> = orders.par_iter().map(meets).collect::<Vec<_>>().concat();
+    found.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+    Ok(found)
 }

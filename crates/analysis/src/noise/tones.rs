@@ -11,8 +11,9 @@ use flexsc_spacecraft::load_lines::LoadLines;
 use nalgebra::{Complex, DVector};
 use rayon::prelude::*;
 
-use super::lines::{LineLoop, SpectralLine};
+use super::lines::LineLoop;
 use super::source_motion::{Measure, SourceMotion, WorstTone};
+use super::spectral_line::SpectralLine;
 use super::transfer::LoopTransfer;
 use crate::margins::frequency_response::{modulus, unit_circle};
 
@@ -125,19 +126,21 @@ impl ToneLoop<'_> {
         for same in order.chunk_by(|a, b| multiple(*b) - multiple(*a) <= EQUAL * multiple(*b)) {
             let responses = self.transfer.at(frequency * multiple(same[0]))?;
             for (output, motion) in motions.iter_mut().enumerate() {
-                let amplitude = |line: usize| -> Complex<f64> {
+                let mut before = responses[same[0]].lines[output].clone();
+                for (line, (_, amplitude)) in before.iter_mut().enumerate() {
                     let each = same.iter().map(|place| {
                         let phase = lines.harmonics[*place].phase.get();
-                        responses[*place].amplitudes[output][line] * unit_circle(phase)
+                        responses[*place].lines[output][line].1 * unit_circle(phase)
                     });
-                    each.sum()
-                };
-                for (line, at) in responses[same[0]].frequencies.iter().enumerate() {
-                    let amplitude = amplitude(line);
-                    motion.lines.push(SpectralLine { frequency_rad_s: *at, amplitude: modulus(amplitude) });
+                    *amplitude = each.sum();
                 }
-                let last = responses[same[0]].frequencies.len() - 1;
-                direct[output].push((multiple(same[0]), amplitude(last)));
+                let behind = self.transfer.behind_mirror(output, before);
+                direct[output].extend(behind.last().map(|(_, own)| (multiple(same[0]), *own)));
+                let line = |(at, amplitude): (f64, Complex<f64>)| SpectralLine {
+                    frequency_rad_s: at.abs(),
+                    amplitude: modulus(amplitude),
+                };
+                motion.lines.extend(behind.into_iter().map(line));
             }
         }
         for (motion, harmonics) in motions.iter_mut().zip(direct) {

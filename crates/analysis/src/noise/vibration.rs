@@ -9,8 +9,9 @@ use flexsc_numerics::inverse::inverse_3x3;
 use nalgebra::{DVector, Matrix3};
 
 use super::broadband::{BroadbandSource, broadband};
-use super::lines::{LineLoop, SpectralLine};
+use super::lines::LineLoop;
 use super::source_motion::{Measure, SourceMotion};
+use super::spectral_line::SpectralLine;
 use super::tones::{ToneSource, worst_tones};
 use flexsc_scenario::Scenario;
 

@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::lines::SpectralLine;
 use super::noisy_loop::NoisyLoop;
+use super::spectral_line::SpectralLine;
 use super::windows::{Window, WindowVariances, WindowWeights};
 
 /// Rms of an output over windows, in the unit of the output: of noise over those that begin at a sample of the law, of the

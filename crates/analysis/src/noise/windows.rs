@@ -4,6 +4,9 @@
 //! linear in the states at the start and in the draws since, so that its variance needs no spectrum. For a stationary
 //! signal of the density S the indices are integrals of S with the weights of [`WindowWeights`].
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
 use flexsc_formats::reader_units::{self, number};
 use nalgebra::{DMatrix, RowDVector};
 
@@ -66,6 +69,13 @@ pub(super) struct Functional {
     lines: Vec<([f64; 2], [f64; 2])>,
     /// Times, and weights.
     points: Vec<(f64, f64)>,
+}
+
+/// Integrals of an output's row, and of the row times the time, over the period and over parts of it.
+pub(super) struct OutputMoments {
+    whole: [RowDVector<f64>; 2],
+    /// Integrals over parts that were asked for, by the bits of their ends.
+    parts: RefCell<BTreeMap<[u64; 2], [RowDVector<f64>; 2]>>,
 }
 
 impl Functional {
@@ -172,8 +182,13 @@ impl NoisyLoop {
         sums
     }
 
+    /// Returns the integrals of an output over an interval of the period, which is the whole of it, and later over parts of it.
+    pub(super) fn moments(&self, output: usize, interval: [f64; 2]) -> OutputMoments {
+        OutputMoments { whole: self.integrals(output, interval), parts: RefCell::default() }
+    }
+
     /// Returns the integrals of an output's row, and of the row times the time, over an interval of the period.
-    pub(super) fn moments(&self, output: usize, interval: [f64; 2]) -> [RowDVector<f64>; 2] {
+    fn integrals(&self, output: usize, interval: [f64; 2]) -> [RowDVector<f64>; 2] {
         let columns = self.a.nrows() + self.drawn_by.len();
         let mut found = [RowDVector::zeros(columns), RowDVector::zeros(columns)];
         self.motion.integrate(&[output], interval, 0.0, |time, weight, rows| {
@@ -189,7 +204,7 @@ impl NoisyLoop {
         &self,
         output: usize,
         functional: &Functional,
-        moments: &[RowDVector<f64>; 2],
+        moments: &OutputMoments,
     ) -> Vec<f64> {
         let mut sums = vec![0.0; self.sources.len()];
         for sample in 0..self.samples {
@@ -206,7 +221,7 @@ impl NoisyLoop {
         &self,
         output: usize,
         functional: &Functional,
-        moments: &[RowDVector<f64>; 2],
+        moments: &OutputMoments,
     ) -> Vec<f64> {
         let order = self.a.nrows();
         let mut sums = vec![0.0; self.sources.len()];
@@ -232,18 +247,25 @@ impl NoisyLoop {
         &self,
         output: usize,
         functional: &Functional,
-        moments: &[RowDVector<f64>; 2],
+        moments: &OutputMoments,
         period: usize,
     ) -> RowDVector<f64> {
         let start = period as f64 * self.period;
-        let mut row = RowDVector::zeros(moments[0].len());
+        let mut row = RowDVector::zeros(moments.whole[0].len());
         for ([from, to], [first, second]) in &functional.lines {
             let inside = [from - start, to - start].map(|end| end.clamp(0.0, self.period));
             if inside[1] - inside[0] <= ROUNDING * self.period {
                 continue;
             }
-            let own =
-                if inside == [0.0, self.period] { moments.clone() } else { self.moments(output, inside) };
+            let own = if inside == [0.0, self.period] {
+                moments.whole.clone()
+            } else {
+                let mut parts = moments.parts.borrow_mut();
+                parts
+                    .entry(inside.map(f64::to_bits))
+                    .or_insert_with(|| self.integrals(output, inside))
+                    .clone()
+            };
             row += &own[0] * (first + second * start) + &own[1] * *second;
         }
         for (time, weight) in &functional.points {

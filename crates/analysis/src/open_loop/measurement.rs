@@ -9,6 +9,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::linear_loop::LinearAxisEstimator;
 use flexsc_scenario::Scenario;
 
+/// Largest latency of a gyro (samples).
+const MOST_LATE: f64 = 100.0;
+
 /// Returns the block from the true angle and rate about each axis to the measured ones; the names of its states begin
 /// with those of `prefixes`.
 ///
@@ -34,6 +37,19 @@ pub fn sensor_block(
             return wrong("is not supported in linear loops: use `continuous`, `sampled` or `gyro`");
         }
     };
+    let sensor = scenario.sensor.first();
+    if sensor.exposure() > Span::ZERO {
+        return wrong("has an `exposure`: a linear loop has one with an `[estimator.attitude]`");
+    }
+    if sensor.rate_latency() > Span::ZERO {
+        let late = libm::round(sensor.rate_latency().seconds() / period.seconds());
+        if sensor.own_period() != Some(period) || late > MOST_LATE {
+            return wrong(
+                "has a `latency`, which a linear loop has in periods of the law, at most 100 of them",
+            );
+        }
+        return Ok(late_rates(late as usize, prefixes));
+    }
     if !is_difference {
         return Ok(LinearBlock::from_gain(DMatrix::identity(2 * prefixes.len(), 2 * prefixes.len())));
     }
@@ -46,6 +62,21 @@ pub fn sensor_block(
         states: vec![BlockState::new(format!("last_{}", angle_name(prefix)), "rad")],
     };
     Ok(LinearBlock::parallel(prefixes.iter().map(axis).collect()))
+}
+
+/// Returns the block of a gyro whose rates come some samples late.
+fn late_rates(late: usize, prefixes: &[&str]) -> LinearBlock {
+    let axis = |prefix: &&str| {
+        let (mut a, mut b) = (DMatrix::zeros(late, late), DMatrix::zeros(late, 2));
+        (1..late).for_each(|place| a[(place, place - 1)] = 1.0);
+        b[(0, 1)] = 1.0;
+        let mut c = DMatrix::zeros(2, late);
+        c[(1, late - 1)] = 1.0;
+        let state = |age: usize| BlockState::new(format!("{prefix}rate_{}_ago", age + 1), "rad/s");
+        let d = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.0]);
+        LinearBlock { a, b, c, d, states: (0..late).map(state).collect() }
+    };
+    LinearBlock::parallel(prefixes.iter().map(axis).collect())
 }
 
 /// Returns the name of the angle about the axis with this prefix.

@@ -28,6 +28,7 @@ pub use transfer::TransferMatrices;
 
 use super::linear_loop::LinearLoop;
 use super::linear_model::{LinearModel, Signal};
+use super::noise::mirror_states::MirrorStates;
 use super::state_space::StateSpaceModel;
 use flexsc_scenario::Scenario;
 
@@ -89,6 +90,8 @@ pub(crate) struct LoopParts<'a> {
     pub parts: LinearLoop,
     pub law: AxisLaws,
     pub opened: LoopBreak,
+    /// Fine mirrors among the states of the body; empty where none are.
+    pub mirrors: Vec<MirrorStates>,
 }
 
 /// Linear model of the body, as matrices.
@@ -175,11 +178,26 @@ impl<'a> LoopParts<'a> {
         }
         let model = LinearModel::from_scenario(scenario, 0.0)?;
         let axes = model.inputs.len();
-        let body = BodyMatrices::new(model)?;
+        let mut body = BodyMatrices::new(model)?;
         let actuators = actuation::combined_response(scenario, axes, delay)?;
         let parts = LinearLoop::from_scenario(scenario)?;
+        body.add_exposures(parts.attitude.as_ref().and_then(attitude_rows::exposure_rates));
         let law = AxisLaws::new(scenario, &body)?;
-        Ok(Self { scenario, body, actuators, parts, law, opened })
+        Ok(Self { scenario, body, actuators, parts, law, opened, mirrors: Vec::new() })
+    }
+
+    /// Returns the parts of the same loop with the wheels that points of the structure carry at a speed (rad/s); `None` if there are
+    /// none.
+    ///
+    /// # Errors
+    /// See [`OpenLoop::from_scenario`].
+    pub(crate) fn at_wheel_speed(&self, speed: f64) -> Result<Option<Self>, ConfigError> {
+        if self.scenario.study.carried_rotors.is_empty() {
+            return Ok(None);
+        }
+        let body = BodyMatrices::new(LinearModel::at_wheel_speed(self.scenario, speed)?)?;
+        let law = AxisLaws::new(self.scenario, &body)?;
+        Ok(Some(Self { body, law, ..self.clone() }))
     }
 
     /// Returns the parts of the same loop, cut open at a point.
@@ -209,6 +227,23 @@ impl BodyMatrices {
             inputs,
             model,
         })
+    }
+
+    /// Adds states without effect, up to a number of states.
+    pub fn resize(&mut self, size: usize) {
+        self.a.resize_mut(size, size, 0.0);
+        self.b.resize_vertically_mut(size, 0.0);
+        self.c.resize_horizontally_mut(size, 0.0);
+    }
+
+    /// Adds the integrals of angles over exposures, whose rates are rows over the states.
+    fn add_exposures(&mut self, rates: Option<DMatrix<f64>>) {
+        let Some(rates) = rates else { return };
+        let first = self.a.nrows();
+        self.resize(first + rates.nrows());
+        self.a.view_mut((first, 0), rates.shape()).copy_from(&rates);
+        let state = |axis: &&str| Signal { name: format!("exposed_{axis}"), unit: "rad s".to_owned() };
+        self.states.extend(AXES.iter().map(state));
     }
 
     /// Returns the inertia that the rigid rates have under the torques.

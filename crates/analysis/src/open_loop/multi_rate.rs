@@ -170,7 +170,7 @@ impl LoopRows {
         let mut flows = BTreeMap::new();
         for pair in schedule.instants(&self.filter).windows(2) {
             let (now, span) = (pair[0], pair[1] - pair[0]);
-            self.filter.act(now, &self.body, &SensorErrors::default());
+            self.filter.act(now, &mut self.body, &SensorErrors::default());
             if now % schedule.step == 0 {
                 let sample = usize::try_from(now / schedule.step).unwrap_or(0);
                 self.sample(parts, now, size + 3 * sample);

@@ -92,7 +92,7 @@ impl SampledSystem {
 }
 
 /// Transition of a state over a time, and the response to inputs that are held.
-type HeldMotion = (DMatrix<f64>, DMatrix<f64>);
+pub type HeldMotion = (DMatrix<f64>, DMatrix<f64>);
 
 /// Largest number of motions that a thread keeps.
 const MOST_KEPT: usize = 256;

@@ -121,7 +121,8 @@ impl ScenarioMeasure {
                     }
                     Err(fault) => return Err(format!("{name}: {fault}")),
                 };
-                let lines = LineLoop::from_parts(parts.clone());
+                let lines = LineLoop::from_parts(parts.clone())
+                    .map_err(|fault| format!("{name}: `{}` {}", fault.key, fault.why))?;
                 let rms = linear_noise(&noisy, &lines, error).ok_or_else(|| {
                     format!("{name}: the linear loop has no index of the requirement `{}`", own.name)
                 })?;

@@ -179,11 +179,13 @@ impl LoopMargins {
             rows.push(json!({"signal": "all together", "modulus": modulus, "disk": disk}));
         }
         rows.extend(independent_disk.map(|disk| json!({"signal": "all, independent", "disk": disk})));
+        let of_attitude = rows.len();
+        rows.extend(self.margins.mirrors.iter().map(|one| json!(one)));
         let (first, rest) = MARGINS.split_at(BEFORE_MASK);
         let mask = [column("mask", "mask")];
         let mask = if self.masked.is_some() { &mask[..] } else { &[] };
         print_rows(&rows, &[first, mask, rest].concat(), self.units);
-        if rows.len() > 1 || *samples > 1 {
+        if of_attitude > 1 || *samples > 1 {
             let delay = number_or_none(self.margins.common_delay_s, |delay| format!("{} s", digits(delay)));
             say!("  delay that all actuators together may add: {delay}");
         }

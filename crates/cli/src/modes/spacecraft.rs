@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use flexsc_core::analysis::body_poles::WhirlPoles;
 use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
 use flexsc_core::formats::count::counted;
 use flexsc_core::numerics::attitude::AXES;
@@ -20,6 +21,8 @@ pub struct Spacecraft {
     /// Name of the scenario.
     pub name: String,
     pub parts: SpacecraftModes,
+    /// Poles with the wheels that points of the structure carry at a speed, if there are such wheels.
+    pub whirl: Option<WhirlPoles>,
     /// True for each axis with jets; for the other axes the influence of a torque of 1 N m is printed.
     pub jets: [bool; 3],
     pub style: Style,
@@ -27,11 +30,15 @@ pub struct Spacecraft {
 
 impl Results for Spacecraft {
     fn json(&self) -> Vec<Json> {
-        vec![with_scenario_name(&self.name, json!(self.parts))]
+        let mut object = json!(self.parts);
+        if let Some(whirl) = &self.whirl {
+            object["whirl"] = json!(whirl);
+        }
+        vec![with_scenario_name(&self.name, object)]
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let Self { name, parts, jets, style } = self;
+        let Self { name, parts, jets, style, .. } = self;
         let [x, y, z] = parts.centre_m.map(digits);
         say!("{name}   {} kg, centre of mass at {x}, {y}, {z} m", digits(parts.mass_kg));
         let inertia = parts.inertia_kg_m2.iter().enumerate().map(|(row, moments)| {
@@ -54,6 +61,7 @@ impl Results for Spacecraft {
             return Ok(());
         }
         self.print_points();
+        self.print_whirl();
         if !parts.turned.is_empty() {
             let drives = parts.turned[0].angles_rad.len();
             let (factor, unit) = style.units.frequency();
@@ -101,6 +109,17 @@ impl Spacecraft {
             rows.push(row);
         }
         print_table(&rows, 1);
+    }
+
+    /// Prints the poles with whirl.
+    fn print_whirl(&self) {
+        let Some(WhirlPoles { wheel_speed_rad_s: speed, poles }) = &self.whirl else { return };
+        let units = self.style.units;
+        let at = speed.map_or_else(|| "their speeds at the start".to_owned(), |speed| units.speed(speed));
+        say!("  poles of the body with its wheels at {at}, hub free, without the loop");
+        let mut rows = vec![texts(&[&units.frequency().1, "period, s", "damping"])];
+        rows.extend(poles.iter().map(|pole| frequency(units, pole.frequency_rad_s, pole.damping).to_vec()));
+        print_table(&rows, 0);
     }
 
     /// Prints the effect of a torque on the hub at the points of the spacecraft.

@@ -39,8 +39,12 @@ fn size(panel: &Panel) -> f64 {
     values.map(|point| point.1.abs()).filter(|value| value.is_finite()).fold(0.0, f64::max)
 }
 
-/// Returns true if a panel has layers of which one has no values larger than rounding errors, and the others are levels.
+/// Returns true if a panel has layers of which one has no values larger than rounding errors, and the others are levels. One
+/// with a remark says something also then.
 fn is_empty(panel: &Panel, least: f64) -> bool {
+    if !panel.remark.is_empty() {
+        return false;
+    }
     let is_nothing =
         |layer: &Layer| layer.points.iter().all(|(_, value)| !value.is_finite() || value.abs() <= least);
     let data = || panel.layers.iter().filter(|layer| !is_level(layer));

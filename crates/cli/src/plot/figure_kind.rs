@@ -8,13 +8,13 @@ use clap::builder::PossibleValue;
 use super::figure_spec::FigureSpec;
 use super::run_events::RunEvents;
 use super::{
-    accelerations, angle, consistency, deflection, drives, envelope, estimate, extra_loop, flywheel,
-    frequency, gain, gimbals, hinges, line_of_sight, magnetorquers, modes, orbit, outputs, phase_plane,
-    pointing, requirement, three_axis, torque, torques,
+    accelerations, angle, consistency, deflection, drives, envelope, estimate, extra_loop, fine_mirror,
+    flywheel, frequency, gain, gimbals, hinges, line_of_sight, magnetorquers, modes, orbit, outputs,
+    phase_plane, pointing, requirement, three_axis, torque, torques,
 };
 
 /// The figures of logs, in the order in which they are listed and drawn.
-const LOG_FIGURES: [&FigureSpec; 29] = [
+const LOG_FIGURES: [&FigureSpec; 30] = [
     &phase_plane::SPEC,
     &torque::SPEC,
     &angle::SPEC,
@@ -36,6 +36,7 @@ const LOG_FIGURES: [&FigureSpec; 29] = [
     &magnetorquers::SPEC,
     &accelerations::SPEC,
     &line_of_sight::SPEC,
+    &fine_mirror::SPEC,
     &orbit::SPEC,
     &drives::SPEC,
     &hinges::SPEC,

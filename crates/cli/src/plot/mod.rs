@@ -18,6 +18,7 @@ mod extra_loop;
 mod figure_kind;
 mod figure_name;
 mod figure_spec;
+mod fine_mirror;
 mod flywheel;
 mod frequency;
 mod gain;
@@ -289,6 +290,11 @@ fn drawn_over(
         if let FigureName::Requirement(name) = name {
             story.requirements.push(requirement::index_of(&story, name)?);
         }
+    }
+    let is_of_all =
+        |name: &FigureName| matches!(name, FigureName::Kind(kind) if kind.name() == requirement::SPEC.name);
+    if asked.iter().any(is_of_all) {
+        story.requirements.clear();
     }
     let usual = FigureKind::usual_in(&story);
     let wanted = if kinds.is_empty() { &usual } else { &kinds };

@@ -3,7 +3,7 @@
 
 use flexsc_core::answer::requirement_id;
 use flexsc_core::control::operation::{Expression, ModeQuantity, ModeReadings, TimeWindow, Timed};
-use flexsc_core::formats::reader_units::{ReaderUnits, number};
+use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, number};
 use flexsc_core::numerics::time::Span;
 use flexsc_core::record::RequirementRobustness;
 use flexsc_core::scenario::{AssessedRequirement, RequirementFormula, RequirementSource};
@@ -229,7 +229,8 @@ fn requirement_panels(
             if let Some(at) = at {
                 let here = (at, signals.value(quantity, at));
                 panel.layers.push(Layer::new("", colour::BLACK, LayerShape::Disc, vec![here]));
-                panel.notes.push(Note::new(format!("decides at {} s", number(at)), here, colour::BLACK));
+                let at = ReaderUnit::for_time_axis(shown.end - shown.start).quantity(at);
+                panel.notes.push(Note::new(format!("decides at {at}"), here, colour::BLACK));
             }
             panel
         })

@@ -45,7 +45,7 @@ impl PageCommand {
     /// Computes the results of the command's analysis.
     pub fn results(&self) -> Result<Box<dyn Results>, CliError> {
         Ok(match &self.verb {
-            Verb::Modes(args) => modes::results(&analysed(&args.scenario)?, args),
+            Verb::Modes(args) => modes::results(&analysed(&args.scenario)?, args)?,
             Verb::Cycle(args) => Box::new(cycle::results(&analysed(&args.scenario)?, args)?),
             Verb::Plan(args) => args.results(analysed(&args.scenario)?)?,
             Verb::Tune(args) => Box::new(args.results(&analysed(&args.scenario)?)?),

@@ -13,6 +13,18 @@ use super::packet::{ContentReader, LONGEST_PACKET, PacketKind};
 pub const VERSION: u16 = 1;
 /// States of a sensor's reading, in the order of their codes.
 pub const STATUS: &[&str] = &["none", "held", "new"];
+/// Code with which a client answers, about all axes, that the commands in force stay.
+const HOLD: usize = CommandQuantity::ALL.len();
+/// Quantities of commands in the order of their codes, and that answer.
+const QUANTITIES: &[&str] = &{
+    let mut words = ["held"; HOLD + 1];
+    let mut code = 0;
+    while code < HOLD {
+        words[code] = CommandQuantity::LABELS[code];
+        code += 1;
+    }
+    words
+};
 /// Ends of a run, in the order of their codes.
 pub const ENDS: &[&str] = &["complete", "interrupted", "failed"];
 
@@ -117,8 +129,9 @@ impl PacketLayout {
 
     /// Returns the fields of the packet with the commands.
     pub fn command_fields(&self) -> Vec<Field> {
-        let meaning = "quantity of the command about the axis";
-        let words = FieldType::Word(&CommandQuantity::LABELS);
+        let meaning =
+            "quantity of the command about the axis; held about all axes, if the commands in force stay";
+        let words = FieldType::Word(QUANTITIES);
         let mut quantity = Field::new("command.quantity", words, "", meaning);
         let mut value =
             Field::new("command.value", FieldType::F64, "", "command, in the SI unit of its quantity");
@@ -193,25 +206,27 @@ impl PacketLayout {
         content
     }
 
-    /// Returns the commands in the content of a packet after its cycle; `None` if it has another length, and a text if a
-    /// command is none.
-    pub fn commands(&self, mut content: ContentReader<'_>) -> Option<Result<[Command; 3], String>> {
+    /// Returns the commands in the content of a packet after its cycle, none if those in force stay; `None` if it has another
+    /// length, and a text if a command is none.
+    pub fn commands(&self, mut content: ContentReader<'_>) -> Option<Result<Option<[Command; 3]>, String>> {
         let mut quantities = [0; 3];
         let mut commands = [Command::Torque(0.0); 3];
         for quantity in &mut quantities[..self.axes] {
             *quantity = content.u8()?;
         }
+        let is_held = quantities[..self.axes].iter().all(|code| usize::from(*code) == HOLD);
         let mut faults = Vec::new();
         for (axis, code) in quantities.into_iter().enumerate().take(self.axes) {
             let value = content.f64()?;
             match CommandQuantity::ALL.get(usize::from(code)) {
+                _ if is_held => {}
                 Some(quantity) if value.is_finite() => commands[axis] = quantity.command(value),
                 Some(_) => faults.push(format!("the command about axis {} is {value}", axis + 1)),
                 None => faults.push(format!("the command about axis {} has the quantity {code}", axis + 1)),
             }
         }
         let fault = faults.into_iter().next();
-        content.0.is_empty().then_some(fault.map_or(Ok(commands), Err))
+        content.0.is_empty().then_some(fault.map_or(Ok((!is_held).then_some(commands)), Err))
     }
 }
 

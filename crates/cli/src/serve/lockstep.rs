@@ -2,6 +2,7 @@
 
 use flexsc_core::answer::{Observed, RunObserver};
 use flexsc_core::campaign::{CampaignRun, CommandLog};
+use flexsc_core::control::law::Command;
 use flexsc_core::metrics::{Metrics, MetricsCollector};
 use flexsc_core::numerics::time::Span;
 use flexsc_core::record::{LogFile, Record, RecordError, RunEnd};
@@ -114,21 +115,35 @@ impl Lockstep<'_> {
             let telemetry = self.simulation.telemetry(&self.session.layout().telemetry)?;
             let commands = self.session.exchange(cycle, now, before, &telemetry);
             let commands = commands.map_err(StopReason::Session)?;
-            if let Some(axis) = self.simulation.unexecuted_axis(&commands) {
-                let quantity = commands[axis].quantity().label();
-                let why = format!(
-                    "the command about axis {} has the quantity {quantity}, which no actuator in use executes",
-                    axis + 1
-                );
+            if let Some(why) = self.refusal(commands.as_ref()) {
                 return Err(StopReason::Session(self.session.refuse(why)));
             }
-            self.commands.push(now, commands);
-            self.simulation.set_external_command(commands);
+            if let Some(commands) = commands {
+                self.commands.push(now, commands);
+                self.simulation.set_external_command(commands);
+            }
             self.simulation.run_up_to(now + self.period, record)?;
             before = Some(now);
             self.cycles += 1;
         }
         Ok(())
+    }
+
+    /// Returns the reason why commands are refused, or their absence if those in force are to stay and there are none; `None` if
+    /// they are not.
+    fn refusal(&self, commands: Option<&[Command; 3]>) -> Option<String> {
+        let Some(commands) = commands else {
+            return self
+                .commands
+                .is_empty()
+                .then(|| "the first cycle has no commands: none are in force".to_owned());
+        };
+        let axis = self.simulation.unexecuted_axis(commands)?;
+        let quantity = commands[axis].quantity().label();
+        let axis = axis + 1;
+        Some(format!(
+            "the command about axis {axis} has the quantity {quantity}, which no actuator in use executes"
+        ))
     }
 
     /// Does everything that is due at the current instant, under the last commands, and ends the record there.

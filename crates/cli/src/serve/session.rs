@@ -74,7 +74,7 @@ pub struct Session {
 /// Packet of the client, as far as it belongs to the session.
 enum Message {
     Request(u64),
-    Commands(u64, Result<[Command; 3], String>),
+    Commands(u64, Result<Option<[Command; 3]>, String>),
     Farewell,
     /// Hello that is repeated, because its answer was lost.
     Hello,
@@ -202,14 +202,14 @@ impl Session {
         }
     }
 
-    /// Sends the sensors of a cycle, and returns the commands with which the client answers.
+    /// Sends the sensors of a cycle, and returns the commands with which the client answers; `None` if those in force stay.
     pub fn exchange(
         &mut self,
         cycle: u64,
         now: Instant,
         before: Option<Instant>,
         telemetry: &Telemetry,
-    ) -> Result<[Command; 3], SessionEnd> {
+    ) -> Result<Option<[Command; 3]>, SessionEnd> {
         let mut number = self.number;
         let mut content = self.layout.sensor_content([number.into(), cycle], now, before, telemetry);
         let began = WallInstant::now();

@@ -1,6 +1,7 @@
 //! `flexsc spectrum`: noise of the outputs of a loop, exact from its linear model, and lines of its wheels.
 
 mod figures;
+mod mirrors;
 mod named_mode;
 mod peaks;
 mod required_index;
@@ -30,7 +31,7 @@ use crate::result_files::ResultOutput;
 use crate::results::{Results, show, with_scenario_name};
 use crate::row_table::{Column, column, print_rows, print_table};
 use crate::{say, scenario};
-use named_mode::NamedMode;
+use named_mode::ShownModes;
 use required_index::RequiredIndex;
 use waterfall::OutputWaterfall;
 use welch::{LogPart, WelchEstimate, estimates};
@@ -90,7 +91,7 @@ pub struct SpectrumResults {
     window_s: Option<f64>,
     /// Angle of a pixel (rad), if one is given.
     pixel: Option<f64>,
-    modes: Vec<NamedMode>,
+    modes: ShownModes,
 }
 
 /// Computes the noise of a scenario's loop.
@@ -129,10 +130,12 @@ pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResul
             estimates(&part, &noisy, &outputs)?
         }
     };
+    let speeds = report.wheels.iter().flat_map(|wheels| &wheels.speed_rad_s);
+    let fastest = speeds.copied().fold(0.0, f64::max);
     let required = report.outputs.iter().map(|output| RequiredIndex::on_output(scenario, &output.output));
     Ok(SpectrumResults {
         required: required.collect(),
-        modes: NamedMode::all(scenario),
+        modes: ShownModes::new(scenario, fastest),
         window_s: args.window,
         pixel: args.pixel,
         over_speed: args.speeds.is_some(),
@@ -342,6 +345,7 @@ impl Results for SpectrumResults {
         let mut all = figures::densities(&self.name, &self.report, &self.welch);
         let windows = (&self.required[..], self.window_s);
         all.extend(waterfall::figures(&self.name, &self.report, windows, &self.modes));
+        all.extend(mirrors::figures(&self.name, &self.report.mirrors));
         all
     }
 
@@ -384,6 +388,7 @@ impl Results for SpectrumResults {
             print_table(&rows, 1);
             self.print_windows();
         }
+        mirrors::print(&self.report.mirrors, self.units);
         self.print_machines();
         self.print_contrast();
         self.print_welch();

@@ -1,10 +1,18 @@
 //! Free modes with the names of the appendages that they belong to.
 
+use std::f64::consts::TAU;
+
 use flexsc_core::Scenario;
+use flexsc_core::analysis::body_poles::WhirlPoles;
 use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
+use flexsc_figure::Point;
 
 /// Difference of clamped frequencies, relative, below which modes of several appendages are one.
 const ALIKE: f64 = 0.01;
+/// Number of steps of the speed.
+const STEPS: u32 = 24;
+/// Change of a frequency over the speed from which a mode whirls.
+const WHIRL: f64 = 1.02;
 
 /// Free mode with a name.
 #[derive(Clone)]
@@ -40,6 +48,42 @@ impl NamedMode {
             .enumerate()
             .map(|(place, frequency_rad_s)| Self { frequency_rad_s, name: name(place) })
             .collect()
+    }
+}
+
+/// Modes of a figure over the speed of the wheels.
+pub struct ShownModes {
+    /// Modes that do not depend on the speed.
+    pub named: Vec<NamedMode>,
+    /// Frequencies (Hz) over the speed (rad/s) of modes that whirl.
+    pub whirling: Vec<Vec<Point>>,
+}
+
+impl ShownModes {
+    /// Returns the modes of a scenario up to a speed of its wheels (rad/s).
+    pub fn new(scenario: &Scenario, fastest: f64) -> Self {
+        let named = NamedMode::all(scenario);
+        let poles = |step: u32| -> Option<(f64, Vec<f64>)> {
+            let speed = fastest * f64::from(step) / f64::from(STEPS);
+            let found = WhirlPoles::from_scenario(scenario, Some(speed)).ok()??;
+            Some((speed, found.poles.iter().map(|pole| pole.frequency_rad_s / TAU).collect()))
+        };
+        let all: Vec<(f64, Vec<f64>)> = (0..=STEPS).filter_map(poles).collect();
+        let most = all.iter().map(|(_, hertz)| hertz.len()).max().unwrap_or(0);
+        // Slow motions of the rigid body have fewer poles at rest: modes are counted from the highest.
+        let curve = |down: usize| -> Vec<Point> {
+            let at = |(speed, hertz): &(f64, Vec<f64>)| {
+                Some((*speed, *hertz.get(hertz.len().checked_sub(down + 1)?)?))
+            };
+            all.iter().filter_map(at).collect()
+        };
+        let whirls = |curve: &Vec<Point>| {
+            let hertz = curve.iter().map(|point| point.1);
+            hertz.clone().fold(0.0, f64::max) > WHIRL * hertz.fold(f64::INFINITY, f64::min)
+        };
+        let is_mode = |down: &usize| *down < named.len();
+        let whirling = (0..most).filter(is_mode).map(curve).filter(whirls).collect();
+        Self { named, whirling }
     }
 }
 

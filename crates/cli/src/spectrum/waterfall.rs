@@ -11,7 +11,7 @@ use flexsc_figure::{
     power_text,
 };
 
-use super::named_mode::NamedMode;
+use super::named_mode::{NamedMode, ShownModes};
 use super::required_index::RequiredIndex;
 
 /// Decades of amplitudes that have colours, and colours of each.
@@ -44,7 +44,7 @@ pub fn figures(
     name: &str,
     report: &NoiseReport,
     (required, window_s): (&[Option<RequiredIndex>], Option<f64>),
-    modes: &[NamedMode],
+    modes: &ShownModes,
 ) -> Vec<Named> {
     let all = OutputWaterfall::all(report, required, window_s).into_iter();
     all.map(|one| (format!("{name}-waterfall_{}", one.output.output), one.figure(name, modes))).collect()
@@ -119,7 +119,7 @@ impl<'a> OutputWaterfall<'a> {
         self.required.map_or_else(fitting, |own| own.required.unit.clone())
     }
 
-    fn figure(&self, name: &str, modes: &[NamedMode]) -> Figure {
+    fn figure(&self, name: &str, modes: &ShownModes) -> Figure {
         let lines = self.points();
         let panels = [Some(self.effect()), self.contrast(), Some(self.places(&lines, modes))];
         let name = format!("{name}: lines of the wheels in {}", self.output.output);
@@ -185,10 +185,10 @@ impl<'a> OutputWaterfall<'a> {
     }
 
     /// Returns the panel of the frequencies of the lines over the speed, coloured by their amplitude.
-    fn places(&self, lines: &[(f64, Vec<(f64, f64)>)], modes: &[NamedMode]) -> Panel {
+    fn places(&self, lines: &[(f64, Vec<(f64, f64)>)], modes: &ShownModes) -> Panel {
         let all = || lines.iter().flat_map(|(speed, own)| own.iter().map(move |line| (*speed, *line)));
         let orders = |place: usize| self.lines_at(place).map(|(order, _)| order);
-        let excited = excited_modes(&all().map(|(_, line)| line).collect::<Vec<_>>(), modes);
+        let excited = excited_modes(&all().map(|(_, line)| line).collect::<Vec<_>>(), &modes.named);
         let slowest = self.wheels.speed_rad_s.first().copied().unwrap_or(1.0);
         let direct = orders(0).fold(f64::INFINITY, f64::min) * slowest / TAU;
         let lowest = excited.iter().map(|mode| mode.frequency_rad_s / TAU).fold(direct, f64::min);
@@ -209,7 +209,12 @@ impl<'a> OutputWaterfall<'a> {
             Layer::new("", colours[colours.len() - 1 - class], LayerShape::Dot, points)
         };
         let x = self.speed();
-        let mut layers = Vec::new();
+        let is_shown = |point: &Point| frequency.range.contains(&point.1);
+        let whirl = modes.whirling.iter().map(|curve| {
+            let shown = curve.iter().copied().filter(is_shown).collect();
+            Layer::new("", colour::GREEN, LayerShape::Line(1.0), shown)
+        });
+        let mut layers: Vec<Layer> = whirl.collect();
         let mut notes = Vec::new();
         for (name, mut hertz) in labels(&excited) {
             for height in &hertz {

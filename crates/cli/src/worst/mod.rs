@@ -7,12 +7,13 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
+use flexsc_core::analysis::noise::{WheelOutput, Window};
 use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::campaign::{Campaign, Design};
 use flexsc_core::formats::count::counted;
 use flexsc_core::scenario::AssessedRequirement;
 use flexsc_core::uncertain::UncertainKey;
-use flexsc_core::worst_case::{MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase};
+use flexsc_core::worst_case::{LineSearch, MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
@@ -23,6 +24,7 @@ use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::human::{Units, digits};
 use crate::number_table::NumberTable;
+use crate::quantity::in_unit;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, print_lines, with_scenario_name};
 use crate::row_table::{Column, column, print_rows};
@@ -34,11 +36,18 @@ pub struct WorstArgs {
     #[command(flatten)]
     pub scenario: scenario::ScenarioArgs,
     /// Metric, or element NAME[i] of a list [default: all requirements of the scenario]
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["requirement", "margin"])]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["requirement", "margin", "signal"])]
     metric: Option<String>,
     /// Requirement of the scenario
-    #[arg(long, value_name = "NAME", conflicts_with = "margin")]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["margin", "signal"])]
     requirement: Option<String>,
+    /// Output of the linear loop, as of `spectrum`, such as line_of_sight0_x: its rms under the imbalance of the wheels at their worst
+    /// speed
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["margin", "campaign"])]
+    signal: Option<String>,
+    /// Length of windows within which the signal moves against its mean (s), such as an exposure time [default: all of its motion]
+    #[arg(long, value_name = "TIME", requires = "signal", value_parser = in_unit("s"))]
+    window: Option<f64>,
     /// Stability margin, the least of all loops
     #[arg(long, value_name = "MARGIN", value_parser = choice(&MarginKind::ALL, MarginKind::word))]
     margin: Option<MarginKind>,
@@ -109,16 +118,21 @@ pub fn run(args: &WorstArgs) -> Result<(), CliError> {
 pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliError> {
     let name = scenario.name.clone();
     let most = args.points as usize;
-    if let Some(kind) = args.margin {
-        let search = MarginSearch { kind, opened: args.opened, most_loops: most };
-        let case =
-            search.run(scenario, stop_requested).map_err(|error| CliError::worst_case(&name, error))?;
-        return Ok(WorstCases {
-            name,
-            cases: vec![(case, None)],
-            bounds: None,
-            units: args.output.choice.units(),
-        });
+    let of_loop = match (args.margin, &args.signal) {
+        (Some(kind), _) => {
+            let search = MarginSearch { kind, opened: args.opened, most_loops: most };
+            Some(search.run(scenario, stop_requested))
+        }
+        (None, Some(signal)) => {
+            let window = args.window.map(|length| Window { length, separation: None });
+            let output = WheelOutput { name: signal.clone(), window };
+            Some(LineSearch { output, most_loops: most }.run(scenario, stop_requested))
+        }
+        (None, None) => None,
+    };
+    if let Some(case) = of_loop {
+        let cases = vec![(case.map_err(|error| CliError::worst_case(&name, error))?, None)];
+        return Ok(WorstCases { name, cases, bounds: None, units: args.output.choice.units() });
     }
     let quantities = args.quantities(scenario)?;
     if quantities.is_empty() {
@@ -176,7 +190,7 @@ impl WorstArgs {
         if let Some(name) = &self.requirement {
             return Ok(vec![RunQuantity::Requirement(name.clone())]);
         }
-        if self.margin.is_some() {
+        if self.margin.is_some() || self.signal.is_some() {
             return Ok(Vec::new());
         }
         let all = &scenario.study.requirements;

@@ -26,6 +26,8 @@ pub struct ActuatorSet {
     /// elastic rate is included.
     back_emf: (f64, bool),
     unloader: Option<UnloaderState>,
+    /// Estimated rate about each axis (rad/s).
+    estimated_rate: [f64; 3],
     /// Demand of the laws about each axis.
     demands: Vec<Demand>,
     /// For each stage of the law, its start and which actuators execute demands; empty if all do throughout.
@@ -53,6 +55,7 @@ impl ActuatorSet {
             has_pulses: false,
             back_emf: Default::default(),
             unloader: None,
+            estimated_rate: [0.0; 3],
             demands: vec![Demand::Torque(0.0); axes],
             stages: Vec::new(),
             mode: None,
@@ -138,7 +141,7 @@ impl ActuatorSet {
 
     /// Executes the changes that are due, and unloads the rotors.
     fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
-        let stored = Vector::from(self.stored_momentum(now));
+        let stored = Vector::from(self.known_momentum(now, rigid, self.estimated_rate));
         let held = self.unloader.as_mut().and_then(|of| of.serve(now, rigid, stored, &self.demands));
         let executing = self.executing.iter_mut();
         executing.for_each(|(actuator, _)| actuator.update(now, ActuatorEvent::Due(rigid)));
@@ -182,6 +185,7 @@ impl Actuator for ActuatorSet {
                 self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, event));
                 self.unloader.iter_mut().for_each(|unloader| unloader.actuator.update(now, event));
             }
+            ActuatorEvent::EstimatedRate(rate) => self.estimated_rate = rate,
             ActuatorEvent::Mode(mode) => self.mode = self.mode.map(|_| mode),
             ActuatorEvent::Rotors(_) => {
                 self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, event));
@@ -246,6 +250,12 @@ impl MomentumStorage for ActuatorSet {
         let keepers = self.keepers.iter().map(|index| self.executing[*index].0.capabilities());
         let stored = keepers.map(|of| Vector::from(of.stored_momentum(now)));
         stored.reduce(|sum, next| sum + next).unwrap_or_default().into()
+    }
+
+    fn known_momentum(&self, now: Instant, rate: [f64; 3], estimated: [f64; 3]) -> [f64; 3] {
+        let keepers = self.keepers.iter().map(|index| self.executing[*index].0.capabilities());
+        let known = keepers.map(|of| Vector::from(of.known_momentum(now, rate, estimated)));
+        known.reduce(|sum, next| sum + next).unwrap_or_default().into()
     }
 
     fn wheel_speeds(&self, now: Instant, rate: [f64; 3]) -> Vec<f64> {

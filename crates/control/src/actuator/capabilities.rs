@@ -26,16 +26,20 @@ pub struct Capabilities<'a> {
 pub struct UnloadingCycle {
     /// Start of the cycle; `None` before the first one.
     pub at: Option<Instant>,
-    /// Momentum of the wheels or gyros at its start (N m s).
-    pub stored: Vector,
     /// Torque on the body that they counteract (N m).
     pub counter: Vector,
 }
 
 impl Capabilities<'_> {
-    /// Returns the angular momentum stored in the rotors (N m s, body axes), as available to the drives; 0 without any.
+    /// Returns the angular momentum stored in the rotors (N m s, body axes); 0 without any.
     pub fn stored_momentum(&self, now: Instant) -> [f64; 3] {
         self.momentum.map_or([0.0; 3], |storage| storage.stored_momentum(now))
+    }
+
+    /// Returns the angular momentum stored in the rotors (N m s, body axes) as the control system knows it: of wheels by the
+    /// speeds that are available to the drives on a body with this rate (rad/s), and by the estimated rate (rad/s).
+    pub fn known_momentum(&self, now: Instant, rate: [f64; 3], estimated: [f64; 3]) -> [f64; 3] {
+        self.momentum.map_or([0.0; 3], |storage| storage.known_momentum(now, rate, estimated))
     }
 
     /// Returns the speeds of reaction wheels relative to a body with this rate (rad/s), as available to the drives; empty
@@ -52,8 +56,13 @@ impl Capabilities<'_> {
 
 /// Actuator that stores momentum in rotors.
 pub trait MomentumStorage {
-    /// Returns the angular momentum stored in the rotors (N m s, body axes), as available to the drives.
+    /// Returns the angular momentum stored in the rotors (N m s, body axes).
     fn stored_momentum(&self, now: Instant) -> [f64; 3];
+
+    /// Returns the angular momentum stored in the rotors (N m s, body axes) as [`Capabilities::known_momentum`] does.
+    fn known_momentum(&self, now: Instant, _rate: [f64; 3], _estimated: [f64; 3]) -> [f64; 3] {
+        self.stored_momentum(now)
+    }
 
     /// Returns the log rows of wheels about their own axes, of a body with this rate (rad/s).
     fn wheels(&self, _now: Instant, _rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {

@@ -244,7 +244,10 @@ impl Actuator for ControlMomentGyrosState {
         match event {
             ActuatorEvent::CounterTorque(torque) => self.against = torque,
             ActuatorEvent::Due(_) => self.serve(now),
-            ActuatorEvent::MagneticField(_) | ActuatorEvent::Rotors(_) | ActuatorEvent::Mode(_) => {}
+            ActuatorEvent::MagneticField(_)
+            | ActuatorEvent::EstimatedRate(_)
+            | ActuatorEvent::Rotors(_)
+            | ActuatorEvent::Mode(_) => {}
         }
     }
 

@@ -11,6 +11,8 @@ pub enum ActuatorEvent<'a> {
     Due([f64; 3]),
     /// Measured magnetic field in the body's axes (T), before the commands that depend on it.
     MagneticField(Vector),
+    /// Estimated rate about each axis (rad/s), before the changes that are due.
+    EstimatedRate([f64; 3]),
     /// Torque on the body (N m) that wheels or gyros counteract from the next command on.
     CounterTorque(Vector),
     /// State of the rotors in bearings, as computed by the motion.

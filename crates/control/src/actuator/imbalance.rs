@@ -37,7 +37,7 @@ pub struct Imbalance {
     /// Further harmonics of the speed, the same for all wheels.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub harmonics: Vec<Harmonic>,
-    /// Point of the structure at which the wheels are mounted; default: the first of the body's points.
+    /// Point of the structure at which the wheels shake; default: `points` of the wheels, else the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Position of each wheel relative to that point (m); default: at the point.
@@ -91,18 +91,18 @@ impl Imbalance {
             && self.angle.for_wheel(one) == self.angle.for_wheel(other)
     }
 
-    /// Returns the harmonic lines of a wheel that is mounted at its point of a body.
+    /// Returns the harmonic lines of a wheel that is mounted at a point of a body, by default that of the imbalance.
     ///
     /// # Errors
     /// A `ConfigError` with a key within the imbalance and the reason.
     pub fn harmonic_lines(
         &self,
-        wheel: usize,
+        (wheel, carrier): (usize, Option<&str>),
         rotor: &HubRotor,
         body: &ThreeAxisModel,
     ) -> Result<Vec<HarmonicLine>, ConfigError> {
         let first = body.points.first().map_or("", |point| point.name.as_str());
-        let name = self.point.as_deref().unwrap_or(first);
+        let name = carrier.or(self.point.as_deref()).unwrap_or(first);
         let Some(point) = body.point(name) else {
             let points = body.point_names();
             return Err(ConfigError::new(

@@ -191,7 +191,10 @@ impl Actuator for MagnetorquersState {
                     }
                 }
             }
-            ActuatorEvent::CounterTorque(_) | ActuatorEvent::Rotors(_) | ActuatorEvent::Mode(_) => {}
+            ActuatorEvent::EstimatedRate(_)
+            | ActuatorEvent::CounterTorque(_)
+            | ActuatorEvent::Rotors(_)
+            | ActuatorEvent::Mode(_) => {}
         }
     }
 

@@ -81,7 +81,7 @@ pub use target_loss::{SATURATION_GAP, TargetLoss, TargetLossMonitor};
 pub use thrusters::Thrusters;
 pub use unloading::{UnloadingTask, WheelUnloading};
 pub use wheel_allocation::{Allocation, AllocationCriterion};
-pub use wheels::{Arrangement, FrictionCompensation, SpeedBias, Wheels};
+pub use wheels::{Arrangement, CarriedRotor, FrictionCompensation, SpeedBias, Wheels};
 pub use wheels_state::WheelsState;
 pub use zero_order_hold::ZeroOrderHold;
 

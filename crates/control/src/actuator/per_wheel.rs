@@ -17,12 +17,12 @@ pub enum PerWheel<T> {
     Each(Vec<T>),
 }
 
-impl<T: Copy + Default> PerWheel<T> {
+impl<T: Clone + Default> PerWheel<T> {
     /// Returns the value of a wheel.
     pub fn for_wheel(&self, wheel: usize) -> T {
         match self {
-            Self::All(value) => *value,
-            Self::Each(values) => values.get(wheel).copied().unwrap_or_default(),
+            Self::All(value) => value.clone(),
+            Self::Each(values) => values.get(wheel).cloned().unwrap_or_default(),
         }
     }
 
@@ -34,7 +34,7 @@ impl<T: Copy + Default> PerWheel<T> {
         match self {
             Self::Each(values) if values.len() != wheels => {
                 let why = format!(
-                    "must be one number, or one for each of {}, got {}",
+                    "must be one for all, or one for each of {}, got {}",
                     counted(wheels, "wheel"),
                     values.len()
                 );

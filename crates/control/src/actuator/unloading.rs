@@ -241,7 +241,7 @@ impl UnloaderState {
             let jets = self.actuator.capabilities().pulses;
             jets.map_or_else(Vector::zeros, PulsedActuator::cycle_impulse) / self.period.seconds()
         };
-        let before = std::mem::replace(&mut self.cycle, UnloadingCycle { at: Some(now), stored, counter });
+        let before = std::mem::replace(&mut self.cycle, UnloadingCycle { at: Some(now), counter });
         // The mean torque of jets is 0 most of the time; that of magnetorquers changes with the field each time.
         (before.counter != counter || self.law.is_magnetic).then_some(counter)
     }

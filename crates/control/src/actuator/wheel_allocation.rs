@@ -1,5 +1,6 @@
 //! Allocation of a three-axis torque to wheels: the sum of axis times torque over the wheels is the demanded torque.
 
+use flexsc_flight::vector3::Vector3;
 use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::flight_types::to_vector3;
@@ -24,6 +25,8 @@ pub enum AllocationCriterion {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Allocation {
     axes: Vec<Vector>,
+    /// Unit axes as flight code has them.
+    flight_axes: Vec<Vector3>,
     /// Share of each wheel, with the torque of the last allocation, at first 0.
     wheels: Vec<AllocatedWheel>,
     /// Cancelling torques of four wheels: the largest has size 1, the first that is not 0 is positive.
@@ -47,12 +50,18 @@ impl Allocation {
             torque: 0.0,
         };
         let wheels = axes.iter().enumerate().map(wheel).collect();
-        Some(Self { axes: axes.to_vec(), wheels, null, choice })
+        let flight_axes = axes.iter().map(to_vector3).collect();
+        Some(Self { axes: axes.to_vec(), flight_axes, wheels, null, choice })
     }
 
     /// Returns the wheels' axes.
     pub fn axes(&self) -> &[Vector] {
         &self.axes
+    }
+
+    /// Returns the wheels' axes as flight code has them.
+    pub fn flight_axes(&self) -> &[Vector3] {
+        &self.flight_axes
     }
 
     /// Returns torques of four wheels that cancel each other, the largest of size 1.

@@ -38,6 +38,10 @@ pub struct Wheels {
     /// Moment of inertia of each wheel about its axis (kg m²). The inertia tensor of a `[body.spatial]` excludes
     /// it; that of a `[spacecraft]` includes the locked wheels.
     pub inertia: Positive,
+    /// Point of the structure that carries each wheel, such as one of an appendage with a `mount`: one name for all wheels, or one
+    /// for each. The rotor acts there, with the whole rate of the point. Default: all are on the hub.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub points: Option<PerWheel<String>>,
     /// Largest torque of each motor (N m); no limit by default. If a demanded torque exceeds it, the whole torque is scaled
     /// down and keeps its axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -81,6 +85,19 @@ pub struct Wheels {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
 fn is_immediate(delay: &Time) -> bool {
     *delay == Time::default()
+}
+
+/// Rotor of a wheel that turns with a point of the structure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CarriedRotor {
+    /// Index of the wheel.
+    pub wheel: usize,
+    /// Axis, and inertia about it.
+    pub rotor: HubRotor,
+    /// Speed at the start (rad/s).
+    pub speed: f64,
+    /// Rotation of the point per unit of each mode (rad/(m sqrt(kg))).
+    pub rotations: Vec<Vector>,
 }
 
 /// Friction of the wheels as the drives model it.
@@ -153,6 +170,13 @@ impl ActuatorSpec for Wheels {
         place.require_single(needs, "write all wheels in one `wheels`, by their `axes`");
         if let Some(key) = self.bearing_key() {
             needs.require(offers.body.is_two_way, key, ROTATION);
+        }
+        if self.points.is_some() {
+            let why = "needs appendages that do not turn, on drives or hinges";
+            needs.require(!offers.body.turns_appendages, "points", why);
+            let why =
+                "needs bearings that do not stick: leave out `friction`, or have viscous friction alone";
+            needs.require(self.friction_or_imbalance_key() != Some("friction"), "points", why);
         }
         if offers.body.turns_appendages
             && let Some(key) = self.friction_or_imbalance_key()
@@ -239,18 +263,25 @@ impl Wheels {
                 .and_then(|()| viscous.validate_count("viscous", count));
             checked.map_err(|fault| fault.within("compensation"))?;
         }
+        if let Some(points) = &self.points {
+            points.validate_count("points", count)?;
+        }
         if let Some(imbalance) = &self.imbalance {
             imbalance.check(count).map_err(|fault| fault.within("imbalance"))?;
+            if self.points.is_some() && imbalance.point.is_some() {
+                let why = "must be left out: the wheels are at their `points`";
+                return Err(ConfigError::new("imbalance.point", why));
+            }
         }
         Ok(allocation)
     }
 
-    /// Returns the key by which a wheel's motion depends on that of the body: friction, imbalance, or `None`.
+    /// Returns the key by which a wheel's motion depends on that of the body: friction, imbalance, the points that carry wheels, or `None`.
     pub fn bearing_key(&self) -> Option<&'static str> {
         match (&self.friction, &self.imbalance) {
             (Some(_), _) => Some("friction"),
             (None, Some(_)) => Some("imbalance"),
-            (None, None) => None,
+            (None, None) => self.points.as_ref().map(|_| "points"),
         }
     }
 
@@ -282,11 +313,16 @@ impl Wheels {
     /// # Errors
     /// A `ConfigError` with a key within the wheels and the reason.
     pub fn bearings(&self, body: &ThreeAxisModel) -> Result<Vec<Bearing>, ConfigError> {
+        let carried = self.carried_rotors(body)?;
+        let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
         let bearing = |(wheel, rotor): (usize, HubRotor)| {
             let friction = self.friction.as_ref();
             let lines = match &self.imbalance {
-                Some(friction) => {
-                    friction.harmonic_lines(wheel, &rotor, body).map_err(|fault| fault.within("imbalance"))?
+                Some(imbalance) => {
+                    let point = self.points.as_ref().map(|points| points.for_wheel(wheel));
+                    imbalance
+                        .harmonic_lines((wheel, point.as_deref()), &rotor, body)
+                        .map_err(|fault| fault.within("imbalance"))?
                 }
                 None => Vec::new(),
             };
@@ -296,6 +332,9 @@ impl Wheels {
                 coulomb: friction.map_or(0.0, |friction| friction.coulomb.for_wheel(wheel).get()),
                 breakaway: friction.map_or(0.0, |friction| friction.breakaway_torque(wheel)),
                 lines,
+                tilts: carried.iter().find(|own| own.wheel == wheel).map_or_else(Vec::new, |own| {
+                    own.rotations.iter().zip(hub).map(|(rotation, hub)| rotation - hub).collect()
+                }),
             })
         };
         self.rotors()?.into_iter().enumerate().map(bearing).collect()
@@ -308,6 +347,35 @@ impl Wheels {
     pub fn rotors(&self) -> Result<Vec<HubRotor>, ConfigError> {
         let spin_inertia = self.inertia.get();
         Ok(self.directions()?.into_iter().map(|axis| HubRotor { axis, spin_inertia }).collect())
+    }
+
+    /// Returns the rotors that turn with a point of the structure other than the hub.
+    ///
+    /// # Errors
+    /// A `ConfigError` with a key within the wheels and the reason.
+    pub fn carried_rotors(&self, body: &ThreeAxisModel) -> Result<Vec<CarriedRotor>, ConfigError> {
+        let Some(points) = &self.points else { return Ok(Vec::new()) };
+        let rotors = self.rotors()?;
+        let speeds = self.speeds(rotors.len());
+        let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
+        let mut carried = Vec::new();
+        for (wheel, rotor) in rotors.into_iter().enumerate() {
+            let name = points.for_wheel(wheel);
+            if body.point(&name).is_none() {
+                let key = match points {
+                    PerWheel::All(_) => "points".to_owned(),
+                    PerWheel::Each(_) => format!("points[{wheel}]"),
+                };
+                let why = format!("must be one of the body's points, {}, got `{name}`", body.point_names());
+                return Err(ConfigError::new(key, why));
+            }
+            let rotations: Vec<Vector> =
+                body.shapes(&name).into_iter().map(|(_, rotation)| rotation).collect();
+            if rotations != hub {
+                carried.push(CarriedRotor { wheel, rotor, speed: speeds[wheel], rotations });
+            }
+        }
+        Ok(carried)
     }
 
     /// Returns the unit axes of the wheels.

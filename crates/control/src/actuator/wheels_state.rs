@@ -50,8 +50,6 @@ pub struct WheelsState {
     observations: Vec<RotorObservation>,
     /// Tachometer that provides the speeds to the drives; without one they are exact.
     tachometer: Option<TachometerState>,
-    /// Stored momentum by the tachometer's last reading (N m s).
-    known: Option<Vector>,
     compensation: Option<Box<FrictionCompensation>>,
     /// Commanded torque of each drive (N m), and its failures.
     commanded: Vec<f64>,
@@ -103,7 +101,6 @@ impl WheelsState {
             since: Instant::START,
             observations: Vec::new(),
             tachometer: None,
-            known: None,
             compensation: wheels.compensation.clone(),
             commanded: vec![0.0; speeds.len()],
             failing: (0..speeds.len()).map(|wheel| wheels.wheel_failures(wheel)).collect(),
@@ -203,15 +200,6 @@ impl WheelsState {
         (self.wheels[index].torque, self.wheels[index].full) = (torque, full);
     }
 
-    /// Returns the stored momentum (N m s) by the tachometer's speeds, of a body with this rate (rad/s).
-    fn measured_momentum(&self, rate: &Vector) -> Option<Vector> {
-        let speeds = self.tachometer.as_ref()?.speeds();
-        let wheels = self.allocation.axes().iter().zip(speeds);
-        Some(wheels.fold(Vector::zeros(), |sum, (axis, speed)| {
-            sum + axis * (self.inertia * (speed + axis.dot(rate)))
-        }))
-    }
-
     /// Starts and ends failures, which change the torques of the drives.
     fn fail(&mut self, now: Instant, rigid: &Vector) {
         let mut any = false;
@@ -260,7 +248,6 @@ impl WheelsState {
         let observations = self.observations.iter().map(|wheel| [wheel.angle, wheel.speed]);
         if let Some(tachometer) = self.tachometer.as_mut().filter(|tachometer| tachometer.due() == now) {
             tachometer.read(now, observations);
-            self.known = self.measured_momentum(&rigid.into());
             if self.compensation.is_some() {
                 self.turn(now);
                 self.drive_all(now, &rigid.into());
@@ -330,7 +317,7 @@ impl Actuator for WheelsState {
                 self.observations.clear();
                 self.observations.extend_from_slice(rotors);
             }
-            ActuatorEvent::MagneticField(_) | ActuatorEvent::Mode(_) => {}
+            ActuatorEvent::MagneticField(_) | ActuatorEvent::EstimatedRate(_) | ActuatorEvent::Mode(_) => {}
         }
     }
 

@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 use crate::actuator::PulsedActuator;
 use crate::kinds::kinds;
 use crate::part::Part;
-use crate::sensor::{Orientation, Reading};
+use crate::sensor::{Orientation, Reading, VectorMeasurement};
 use crate::state_estimate::{EstimateNeeds, StateEstimate};
 
 pub use adaptation_run::AdaptationRun;
@@ -151,6 +151,12 @@ pub trait Estimator: Part {
     /// reduced moments (rad/s²), of filters of the rigid rate the changes of the rate by pulses (rad/s).
     fn known_inputs(&self) -> [f64; 3] {
         [0.0; 3]
+    }
+
+    /// Returns a vector that a sensor has measured, and that became available at an instant, with the reference with which the
+    /// estimator compares it.
+    fn with_reference(&self, _sensor: usize, measured: VectorMeasurement, _at: Instant) -> VectorMeasurement {
+        measured
     }
 
     /// Returns true about each axis whose filter has lost lock.

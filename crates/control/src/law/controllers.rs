@@ -42,8 +42,6 @@ pub struct AxisDecision {
     pub estimate: StateEstimate,
     /// Output.
     pub output: ControlOutput,
-    /// Speeds of the wheels that a law about three axes together reads (rad/s); empty of other laws.
-    pub wheel_speeds: Vec<f64>,
 }
 
 impl Part for Controllers {
@@ -153,8 +151,8 @@ impl Controllers {
             if let Some(trace) = &mut self.trace {
                 for (axis, (goal, command)) in setpoints.into_iter().zip(output.commands).enumerate() {
                     let output = ControlOutput { command, until: output.until, guards: Guards::NONE };
-                    let (estimate, wheel_speeds) = (state_estimates[axis].clone(), wheel_speeds());
-                    trace.push(AxisDecision { axis, cause, goal, estimate, output, wheel_speeds });
+                    let estimate = state_estimates[axis].clone();
+                    trace.push(AxisDecision { axis, cause, goal, estimate, output });
                 }
             }
             return Some(reported(cause));
@@ -175,8 +173,8 @@ impl Controllers {
                 let goal = goal(axis, held.law.reference_needs());
                 held.hold = held.law.decide(now, cause, &goal, state_estimate);
                 if let Some(trace) = &mut self.trace {
-                    let (estimate, output, wheel_speeds) = (state_estimate.clone(), held.hold, Vec::new());
-                    trace.push(AxisDecision { axis, cause, goal, estimate, output, wheel_speeds });
+                    let (estimate, output) = (state_estimate.clone(), held.hold);
+                    trace.push(AxisDecision { axis, cause, goal, estimate, output });
                 }
                 first = first.or(Some(reported(cause)));
             }

@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 
 use super::Command;
 use crate::actuator::Demand;
-use crate::state_estimate::StateEstimate;
+use crate::state_estimate::{StateEstimate, estimated_rates};
 
 /// Distribution of commands to demands, with the inertia in the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,16 +33,17 @@ impl TorqueDistribution {
         &self.inertia
     }
 
-    /// Returns the demand about each axis, for the estimated motion of a body whose rotors store the momentum `stored`
-    /// (N m s, body axes).
+    /// Returns the demand about each axis, for the estimated motion of a body whose rotors store the momentum that `stored`
+    /// returns for the estimated rate (rad/s; N m s, body axes).
     pub fn demands(
         &self,
         commands: [Command; 3],
         state_estimates: &[StateEstimate],
-        stored: impl FnOnce() -> [f64; 3],
+        stored: impl FnOnce([f64; 3]) -> [f64; 3],
     ) -> [Demand; 3] {
         let torques = if commands.iter().any(|command| matches!(command, Command::Acceleration(_))) {
-            self.torques(commands, state_estimates, stored())
+            let rate = estimated_rates(state_estimates);
+            self.torques(commands, rate, stored(rate))
         } else {
             [0.0; 3]
         };
@@ -58,20 +59,13 @@ impl TorqueDistribution {
         demands
     }
 
-    fn torques(
-        &self,
-        commands: [Command; 3],
-        state_estimates: &[StateEstimate],
-        stored: [f64; 3],
-    ) -> [f64; 3] {
-        let mut rate = Vector::zeros();
-        rate.iter_mut().zip(state_estimates).for_each(|(rate, state_estimate)| *rate = state_estimate.rate);
+    fn torques(&self, commands: [Command; 3], rate: [f64; 3], stored: [f64; 3]) -> [f64; 3] {
         let accelerations =
             commands.map(
                 |command| if let Command::Acceleration(acceleration) = command { acceleration } else { 0.0 },
             );
         let [acceleration, rate, stored] =
-            [Vector::from(accelerations), rate, Vector::from(stored)].map(|v| to_vector3(&v));
+            [accelerations, rate, stored].map(|v| to_vector3(&Vector::from(v)));
         let torque = torque_distribution::torque(&to_matrix3(&self.inertia), &acceleration, &rate, &stored);
         [torque.x, torque.y, torque.z]
     }

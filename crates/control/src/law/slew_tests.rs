@@ -76,7 +76,8 @@ fn sixty_degrees_by_four_wheels() {
 /// are those of both codes.
 #[test]
 fn the_same_with_friction() {
-    let bearing = Bearing { inertia: 0.04, viscous: 5e-5, coulomb: 0.01, breakaway: 0.01, lines: Vec::new() };
+    let bearing =
+        Bearing { inertia: 0.04, viscous: 5e-5, coulomb: 0.01, breakaway: 0.01, ..Bearing::default() };
     let contacts = turn(wheels(40.0), vec![bearing; 4], RUBBING);
     assert_eq!(contacts.len(), 6, "{contacts:?}");
     for ((found, wheel, direction), (time, expected)) in contacts
@@ -144,7 +145,7 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
             axis += 1;
             law.decide(now, DecisionCause::Timeout, &goal, &estimates[axis - 1]).command
         });
-        let demands = distribution.demands(commands, &estimates, || wheels.stored_momentum(now));
+        let demands = distribution.demands(commands, &estimates, |_| wheels.stored_momentum(now));
         wheels.command(now, &demands, rate.into());
         let mut wrench = Wrench::default();
         wheels.apply(now, &mut wrench);

@@ -44,6 +44,15 @@ impl MeasuredQuantity {
         Self::new(name, unit, shape, meaning, read)
     }
 
+    /// Creates the quantity of the reference of a measured vector with this unit, with which an attitude filter compares it.
+    pub fn reference(unit: &'static str) -> Self {
+        let meaning = "reference of the vector at its exposure in inertial axes, by the ephemeris of the attitude filter";
+        let read = |reading: &Reading| {
+            reading.sight.map(|measured| measured.inertial).unwrap_or_default().iter().copied().collect()
+        };
+        Self::new("reference", unit, QuantityShape::Vector, meaning, read)
+    }
+
     /// Iterates over the values in a reading.
     pub fn values(&self, reading: &Reading) -> impl Iterator<Item = f64> + use<> {
         (self.read)(reading).into_iter().take(self.width())

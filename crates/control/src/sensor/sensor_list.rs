@@ -1,5 +1,6 @@
 //! Sensors of a scenario: the first, those of a kind, and what they measure together.
 
+use flexsc_flight::ticks::Ticks;
 use flexsc_numerics::time::Span;
 
 use super::{Accelerometer, SensorKind, Tachometer};
@@ -14,6 +15,14 @@ impl OneOrMany<SensorKind> {
     /// Returns the number of sensors that measure the body's motion.
     pub fn motion_sensors(&self) -> usize {
         self.iter().filter(|sensor| sensor.measures_motion()).count()
+    }
+
+    /// Returns the index of the magnetometer whose field laws read, and the age of its last reading above which the rate of change of
+    /// the field is unknown: three of its periods, for a law with the period `cycle`.
+    pub fn field_source(&self, cycle: Option<Span>) -> Option<(usize, Ticks)> {
+        let index = self.iter().position(|sensor| sensor.measures_field())?;
+        let period = self[index].period(cycle)?.ticks();
+        Some((index, period.plus(period).plus(period)))
     }
 
     /// Returns the tachometer and its index among the sensors, if there is one.

@@ -75,7 +75,19 @@ impl RunData<'_> {
                 _ => String::new(),
             };
             let [rms, peak] = [rms, peak].map(|value| self.units.quantity(value, "rad"));
-            lines.main("line of sight", format!("{}: {rms} rms, largest {peak}{jitter}", line.point));
+            let behind = if line.mirror.is_some() { " behind its mirror" } else { "" };
+            lines.main("line of sight", format!("{}{behind}: {rms} rms, largest {peak}{jitter}", line.point));
+            if line.mirror.is_some() {
+                let of_mirror = |name: &str| self.list(name).get(index).copied().unwrap_or(f64::NAN);
+                let angle = self.units.quantity(of_mirror("fine_mirror_peak_rad"), "rad");
+                let limited = of_mirror("fine_mirror_limited_s");
+                let limits = if limited > 0.0 {
+                    format!("; stroke or rate limits it for {}", time(limited))
+                } else {
+                    String::new()
+                };
+                lines.main("mirror", format!("{}: turns at most {angle}{limits}", line.point));
+            }
         }
     }
 

@@ -1,10 +1,13 @@
-//! Metrics of lines of sight: their errors, their jitter, and the motion of their points.
+//! Metrics of lines of sight: their errors, their jitter, and the motion of their points and mirrors.
 
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{LineOfSightAxis, LineOfSightSample};
+use flexsc_record::{FineMirrorSample, LineOfSightAxis, LineOfSightSample};
 
-use super::{MetricValue, NamedMetric, POINT_DISPLACEMENT, SIGHT_JITTER, SIGHT_PEAK, SIGHT_RMS};
+use super::{
+    MIRROR_LIMITED, MIRROR_PEAK, MetricValue, NamedMetric, POINT_DISPLACEMENT, SIGHT_JITTER, SIGHT_PEAK,
+    SIGHT_RMS,
+};
 use flexsc_scenario::{LineOfSight, Scenario};
 
 /// Collector of the samples of all lines of sight.
@@ -20,6 +23,8 @@ struct LineStatistics {
     /// Largest error (rad) and displacement (m).
     peaks: [f64; 2],
     jitter: Option<JitterWindow>,
+    /// Largest angle of the mirror (rad), and the time for which its command was limited (s).
+    mirror: [f64; 2],
 }
 
 /// Mean and deviations over windows of a fixed number of samples, by Welford's recurrence: small deviations from a large
@@ -67,6 +72,7 @@ impl LineOfSightMetrics {
             line: line.clone(),
             square: (0.0, 0),
             peaks: [f64::NAN; 2],
+            mirror: [f64::NAN; 2],
         };
         Self(scenario.line_of_sight.iter().map(statistics).collect())
     }
@@ -88,6 +94,17 @@ impl LineOfSightMetrics {
         }
     }
 
+    /// Records a sample of a mirror.
+    pub fn observe_mirror(&mut self, now: Instant, sample: &FineMirrorSample) {
+        let Some(of) = self.0.get_mut(sample.line as usize) else { return };
+        let period = of.line.mirror.map_or(0.0, |mirror| mirror.period.seconds());
+        of.mirror[1] = sample.limited as f64 * period;
+        if of.line.is_assessed(now.seconds()) {
+            let angle = Vector::from_iterator(sample.axes.iter().map(|axis| axis.angle_rad)).norm();
+            of.mirror[0] = of.mirror[0].max(angle);
+        }
+    }
+
     /// Returns the metrics of the run that has ended; empty without lines of sight.
     pub fn finish(self) -> Vec<NamedMetric> {
         if self.0.is_empty() {
@@ -102,6 +119,10 @@ impl LineOfSightMetrics {
             (&SIGHT_PEAK, list(&|of| of.peaks[0])),
             (&POINT_DISPLACEMENT, list(&|of| of.peaks[1])),
         ];
+        if self.0.iter().any(|of| of.line.mirror.is_some()) {
+            metrics.push((&MIRROR_PEAK, list(&|of| of.mirror[0])));
+            metrics.push((&MIRROR_LIMITED, list(&|of| of.mirror[1])));
+        }
         if self.0.iter().any(|of| of.jitter.is_some()) {
             let jitter = |of: &LineStatistics| of.jitter.as_ref().map_or(f64::NAN, JitterWindow::rms);
             metrics.insert(2, (&SIGHT_JITTER, list(&jitter)));

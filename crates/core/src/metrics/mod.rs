@@ -240,6 +240,7 @@ impl Record for MetricsCollector {
                     sample.get().into_iter().for_each(|row| rotation.observe_acceleration(row));
                     sample.get().into_iter().for_each(|event| self.blinding.observe(event));
                     sample.get().into_iter().for_each(|row| self.sights.observe(now, row));
+                    sample.get().into_iter().for_each(|row| self.sights.observe_mirror(now, row));
                     sample.get().into_iter().for_each(|row| self.requirements.observe_line(now, row));
                 }
                 if self.tracked.has_observers() {

@@ -2,11 +2,12 @@
 
 use std::f64::consts::PI;
 
-use rayon::prelude::*;
 use schemars::JsonSchema;
 
-use super::box_search::{Assessed, BoxSearch};
-use super::{UncertainKey, WorstCase, WorstCaseFault, uncertain_box};
+use super::box_search::Assessed;
+use super::loop_search::LoopSearch;
+use super::{WorstCase, WorstCaseFault};
+use flexsc_analysis::fine_mirror::mirror_margins;
 use flexsc_analysis::margins::{StabilityMargins, UnstableLoop};
 use flexsc_analysis::open_loop::LoopBreak;
 use flexsc_analysis::structured_tuning::ScenarioLoops;
@@ -14,8 +15,6 @@ use flexsc_scenario::Scenario;
 
 /// Badness of an unstable loop: above that of any margin, and larger the further its poles are outside.
 const UNSTABLE: f64 = 1e6;
-/// Number of loops that are formed between checks for an interruption.
-const AT_ONCE: usize = 64;
 
 /// Margin of a loop, the least of all its signals.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, JsonSchema)]
@@ -95,24 +94,18 @@ impl MarginSearch {
     pub fn run(
         &self,
         scenario: &Scenario,
-        mut interrupted: impl FnMut() -> bool,
+        interrupted: impl FnMut() -> bool,
     ) -> Result<WorstCase, WorstCaseFault> {
-        let ranges = uncertain_box(scenario)?;
-        let names = ranges.keys.iter().map(|own| own.key.clone()).collect();
-        let loops = ScenarioLoops::new(scenario, self.opened, names, false)?;
-        let own: Vec<f64> = ranges.keys.iter().map(UncertainKey::nominal_fraction).collect();
-        let numbers = |parts: &[f64]| -> Vec<f64> {
-            ranges.keys.iter().zip(parts).map(|(own, part)| own.number_at(*part)).collect()
-        };
-        // What the loop of the scenario itself lacks, no other point has.
-        let nominal: Vec<f64> = ranges.keys.iter().map(UncertainKey::nominal_number).collect();
-        loops.loop_at(&nominal, 0).map_err(WorstCaseFault::Request)?;
-        let (mut failed, mut first_failure) = (0, None);
-        let at = |parts: &Vec<f64>| -> Result<Assessed, String> {
-            let opened = loops.loop_at(&numbers(parts), 0)?;
-            Ok(match StabilityMargins::new(&opened) {
-                Ok(margins) => {
-                    let value = self.kind.least_margin(&margins);
+        let has_mirrors = scenario.line_of_sight.iter().any(|line| line.mirror.is_some());
+        let at = |loops: &ScenarioLoops, numbers: &[f64]| -> Result<Assessed, String> {
+            let opened = loops.loop_at(numbers, 0)?;
+            let mirrors =
+                if has_mirrors { mirror_margins(&loops.scenario(numbers, 0)?) } else { Ok(Vec::new()) };
+            let all = StabilityMargins::new(&opened).and_then(|own| Ok([vec![own], mirrors?].concat()));
+            Ok(match all {
+                Ok(all) => {
+                    let each = all.iter().map(|margins| self.kind.least_margin(margins));
+                    let value = each.fold(f64::INFINITY, f64::min);
                     Assessed { badness: -value.min(UNSTABLE), value }
                 }
                 Err(UnstableLoop { spectral_radius, .. }) => {
@@ -120,42 +113,13 @@ impl MarginSearch {
                 }
             })
         };
-        let assess = |points: &[Vec<f64>]| -> Result<Vec<Assessed>, WorstCaseFault> {
-            let mut assessed = Vec::with_capacity(points.len());
-            for some in points.chunks(AT_ONCE) {
-                if interrupted() {
-                    return Err(WorstCaseFault::Interrupted);
-                }
-                let values: Vec<Result<Assessed, String>> = some.par_iter().map(at).collect();
-                for value in values {
-                    assessed.push(value.unwrap_or_else(|why| {
-                        failed += 1;
-                        first_failure.get_or_insert(why);
-                        Assessed { badness: f64::NAN, value: f64::NAN }
-                    }));
-                }
-            }
-            Ok(assessed)
-        };
-        let search = BoxSearch { keys: ranges.keys.len(), most: self.most_loops, seed: scenario.seed };
-        let (points, worst) = search.run(own, Vec::new(), assess)?;
-        let Some(worst) = worst else {
-            let reason = first_failure.map_or_else(String::new, |why| format!(": {why}"));
-            return Err(WorstCaseFault::Request(format!("no point has a margin{reason}")));
-        };
-        let witness = loops.scenario(&numbers(&points[worst].parts), 0).map_err(WorstCaseFault::Request)?;
-        let is_unstable = points[worst].assessed.badness >= UNSTABLE;
+        let search = LoopSearch { opened: self.opened, most: self.most_loops, limit: UNSTABLE };
+        let found = search.run(scenario, at, interrupted)?;
         Ok(WorstCase {
             quantity: format!("{} margin", self.kind.word()),
             unit: self.kind.unit().to_owned(),
             is_least: true,
-            ranges,
-            points,
-            worst,
-            is_unstable,
-            failed,
-            first_failure,
-            witness,
+            ..found
         })
     }
 }

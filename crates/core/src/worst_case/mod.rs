@@ -1,4 +1,4 @@
-//! Worst case over the uncertain keys: the value of a metric, a requirement or a stability margin at the worst point of
+//! Worst case over the uncertain keys: the value of a metric, a requirement, a stability margin or the lines of wheels at the worst point of
 //! their box that a search finds.
 //!
 //! Half of the points are spread over the box, with its corners where they are few; pattern searches from the worst of
@@ -6,6 +6,8 @@
 //! the noise of one run, so that points differ by their keys alone.
 
 mod box_search;
+mod line_search;
+mod loop_search;
 mod margin_search;
 mod metric_search;
 
@@ -20,6 +22,7 @@ use serde_json::{Map, Value as Json, json};
 pub use box_search::{Assessed, SearchPoint};
 use flexsc_scenario::Scenario;
 use flexsc_scenario::uncertain::{UncertainBox, UncertainKey};
+pub use line_search::LineSearch;
 pub use margin_search::{MarginKind, MarginSearch};
 pub use metric_search::{MetricSearch, RunQuantity};
 

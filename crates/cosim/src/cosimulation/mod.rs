@@ -8,7 +8,7 @@ mod values;
 
 use flexsc_core::control::law::Command;
 use flexsc_core::numerics::time::Instant;
-use flexsc_core::{Scenario, Simulation, SimulationError, StopAt};
+use flexsc_core::{Scenario, Simulation, SimulationError, StopAt, Telemetry};
 
 use crate::communication_point::{CommunicationPoint, step_end};
 use crate::content::{FmuContent, FmuPart};
@@ -43,8 +43,8 @@ pub struct CoSimulation {
     is_complete: bool,
     /// Observation at the current instant, if it was read there.
     observed: Option<Vec<f64>>,
-    /// Estimates and references that laws read at the current instant, if they were read there.
-    law_inputs: Option<Vec<f64>>,
+    /// Readings, estimates and references that laws read at the current instant, if they were read there.
+    telemetry: Option<Telemetry>,
     /// Error that ended the run.
     failure: Option<String>,
 }
@@ -68,7 +68,7 @@ impl CoSimulation {
             has_begun: false,
             is_complete: false,
             observed: None,
-            law_inputs: None,
+            telemetry: None,
             failure: None,
         })
     }
@@ -116,7 +116,7 @@ impl CoSimulation {
         self.scenario = self.journal.scenario(&self.content)?;
         self.simulation = Simulation::new(&self.scenario, 0);
         self.observed = None;
-        self.law_inputs = None;
+        self.telemetry = None;
         Ok(())
     }
 
@@ -243,7 +243,7 @@ impl CoSimulation {
             return Err(CoSimulationError::refused(why));
         }
         self.observed = None;
-        self.law_inputs = None;
+        self.telemetry = None;
         action(&mut self.simulation).map_err(|source| {
             self.failure = Some(format!("{}: {source}", self.scenario.name));
             CoSimulationError::Run { name: self.scenario.name.clone(), source }

@@ -1,6 +1,7 @@
 //! Values of the variables of a co-simulation.
 
-use flexsc_core::numerics::time::Span;
+use flexsc_core::Telemetry;
+use flexsc_core::numerics::time::{Instant, Span};
 
 use super::CoSimulation;
 use crate::error::CoSimulationError;
@@ -19,7 +20,10 @@ impl CoSimulation {
         match variable.quantity {
             Quantity::Time => Ok(self.time()),
             Quantity::Observed(index) => self.observe().map(|row| row[index]),
-            Quantity::LawInput(index) => self.law_inputs().map(|values| values[index]),
+            Quantity::LawInput(index) => self.telemetry().map(|telemetry| telemetry.law_inputs[index]),
+            Quantity::Reading(sensor, index) => {
+                self.telemetry().map(|telemetry| telemetry.sensors[sensor].values[index])
+            }
             Quantity::StoredMomentum(axis) => Ok(self.simulation.stored_momentum()[axis]),
             Quantity::Commanded(axis) => Ok(self.simulation.commanded_torque()[axis]),
             Quantity::WindowMean => Ok(self.simulation.window_mean().unwrap_or(f64::NAN)),
@@ -33,11 +37,22 @@ impl CoSimulation {
     ///
     /// # Errors
     /// Fails for a reference of another kind.
-    pub fn get_integer(&self, reference: u32) -> Result<i64, CoSimulationError> {
+    pub fn get_integer(&mut self, reference: u32) -> Result<i64, CoSimulationError> {
         let variable =
             self.table.get(reference).ok_or_else(|| CoSimulationError::no_variable(reference, "integer"))?;
-        let value = self.journal.integer(&variable.quantity, self.simulation.time());
-        value.ok_or_else(|| CoSimulationError::no_variable(reference, "integer"))
+        let (sensor, is_whole) = match variable.quantity {
+            Quantity::ReadingWhole(sensor) => (sensor, true),
+            Quantity::ReadingFemtoseconds(sensor) => (sensor, false),
+            _ => {
+                let value = self.journal.integer(&variable.quantity, self.simulation.time());
+                return value.ok_or_else(|| CoSimulationError::no_variable(reference, "integer"));
+            }
+        };
+        let at = self.telemetry()?.sensors[sensor].at.map(Instant::parts);
+        Ok(at.map_or(
+            if is_whole { -1 } else { 0 },
+            |(whole, part)| if is_whole { whole } else { part } as i64,
+        ))
     }
 
     /// Sets an input, or a parameter before the start.
@@ -97,14 +112,14 @@ impl CoSimulation {
         Ok(self.observed.as_deref().unwrap_or_default())
     }
 
-    /// Returns the estimates and references that laws read at the current instant.
-    fn law_inputs(&mut self) -> Result<&[f64], CoSimulationError> {
-        if self.law_inputs.is_none() {
+    /// Returns readings, and the estimates and references that laws read at the current instant.
+    fn telemetry(&mut self) -> Result<&Telemetry, CoSimulationError> {
+        if self.telemetry.is_none() {
             let layout = self.simulation.telemetry_layout(&self.scenario);
             self.guarded(|simulation| simulation.open(&mut ()))?;
             let telemetry = self.guarded(|simulation| simulation.telemetry(&layout))?;
-            self.law_inputs = Some(telemetry.law_inputs);
+            return Ok(self.telemetry.insert(telemetry));
         }
-        Ok(self.law_inputs.as_deref().unwrap_or_default())
+        Ok(self.telemetry.get_or_insert_default())
     }
 }

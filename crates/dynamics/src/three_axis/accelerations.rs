@@ -51,6 +51,7 @@ impl ThreeAxisMotion {
         let mut stage = RotorStage::default();
         stage.at.extend(self.current.rotor_states.iter().map(|rotor: &RotorState| rotor.values));
         stage.rates.resize(stage.at.len(), Vector::zeros());
+        stage.modal_rates.extend(view.rates.iter().filter(|_| bearings_now.has_tilts()));
         torque += bearings_now.update_rates(&view.rate, &mut stage);
         let mut rotor_torque = if self.bearings.is_empty() {
             self.loads.rotors.iter().fold(Vector::zeros(), |sum, rotor| sum + rotor.axis * rotor.torque)
@@ -64,8 +65,8 @@ impl ThreeAxisMotion {
         let mut modes = Vec::with_capacity(model.modes.len());
         for (index, mode) in model.modes.iter().enumerate() {
             let (q, rate) = (view.displacements[index], view.rates[index]);
-            let mut force = mode.centrifugal_force(&centrifugal_terms(&view.rate))
-                + bearings_now.force(index, &stage.imbalance_terms);
+            let mut force =
+                mode.centrifugal_force(&centrifugal_terms(&view.rate)) + bearings_now.force(index, &stage);
             force += self.loads.forces.get(index).copied().unwrap_or(0.0);
             if let Some(tide) = &tide {
                 force += mode.tidal_force(tide);

@@ -73,13 +73,21 @@ impl ThreeAxisMotion {
             amplitudes: estimated.then_some(&*amplitudes),
         };
         let level = self.levels.level(motion);
-        self.levels.level_for_frequency(level, self.imbalance_frequency(&self.grid).max(self.friction_rate()))
+        let whirl = self.whirl_rate(&self.grid);
+        let fastest = self.imbalance_frequency(&self.grid).max(self.friction_rate()).max(whirl);
+        self.levels.level_for_frequency(level, fastest)
     }
 
     /// Returns the highest rate at which viscous friction slows a rotor (1/s): the stages of a longer step would not
     /// converge.
     fn friction_rate(&self) -> f64 {
         self.bearings.iter().map(Bearing::viscous_rate).fold(0.0, f64::max)
+    }
+
+    /// Returns the largest rate at which rotors that tilt move the modes in a state (rad/s).
+    fn whirl_rate(&self, state: &IntegratorState) -> f64 {
+        let rotors = self.bearings.iter().zip(&state.rotor_states);
+        rotors.map(|(bearing, rotor)| bearing.whirl_rate(rotor.values.x)).fold(0.0, f64::max)
     }
 
     /// Returns the highest frequency of the rotors' imbalance in a state (rad/s).
@@ -109,7 +117,11 @@ impl ThreeAxisMotion {
             + self.current.rotor_states.iter().map(|rotor| rotor.values.x.abs()).sum::<f64>()
             + self.loads.gimbals.iter().map(|gimbal| gimbal.momentum).sum::<f64>();
         let rotation = self.model.mobility * (self.current.mean_momentum.norm() + stored);
-        modes + environment_rate + rotation + self.imbalance_frequency(&self.current)
+        modes
+            + environment_rate
+            + rotation
+            + self.imbalance_frequency(&self.current)
+            + self.whirl_rate(&self.current)
     }
 
     /// Ensures that responses over an off-grid step of `h` (s) exist; returns their index in `extra_responses`.

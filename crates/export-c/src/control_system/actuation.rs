@@ -17,7 +17,7 @@ use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
 
 use super::attitude_unit::{vector, vector_words};
 use super::b_dot::moment_channel;
-use super::{CallLayout, Channel, WordReader};
+use super::{CallLayout, Channel, StoredMomentum, WordReader};
 
 /// Distribution of torques to reaction wheels.
 #[derive(Clone, Debug)]
@@ -105,6 +105,11 @@ pub(super) fn are_wheels(kind: &ActuatorKind) -> bool {
     matches!(kind, ActuatorKind::Wheels(_))
 }
 
+/// Returns the moment of inertia of each of a set of reaction wheels (kg m²); `None` of other actuators.
+pub(super) fn wheel_inertia(kind: &ActuatorKind) -> Option<f64> {
+    if let ActuatorKind::Wheels(wheels) = kind { Some(wheels.inertia.get()) } else { None }
+}
+
 pub(super) fn are_jets(kind: &ActuatorKind) -> bool {
     matches!(kind, ActuatorKind::Jets(_))
 }
@@ -177,27 +182,40 @@ impl Actuation {
         }
     }
 
-    /// Begins a cycle of the unloading, and returns the words of the outputs; laws that command the magnetorquers have set their
-    /// moment to `held` (A m²).
-    pub(super) fn unload(&mut self, inputs: &[u64], held: Option<Vector3>) -> Vec<u64> {
+    /// Begins a cycle of the unloading, and returns the words of the outputs; without an estimated rate (rad/s) it is an input. Laws
+    /// that command the magnetorquers have set their moment to `held` (A m²).
+    pub(super) fn unload(
+        &mut self,
+        inputs: &[u64],
+        stored: &StoredMomentum,
+        rate: Option<Vector3>,
+        held: Option<Vector3>,
+    ) -> Vec<u64> {
         let Some(unit) = &mut self.unloading else { return Vec::new() };
-        let mut outputs = unit.begin(inputs, held);
+        let mut words = WordReader::new(inputs);
+        let given = words.list(stored.channel(1.0).map_or(0, |channel| channel.count));
+        let rate = rate.unwrap_or_else(|| vector(&mut words));
+        let mut outputs = unit.begin(&stored.momentum(&given, &rate), &mut words, held);
         outputs.extend(self.drive_wheels());
         outputs
     }
 
-    /// Returns the function that unloads the wheels.
-    pub(super) fn unload_layout(&self) -> Option<CallLayout> {
+    /// Returns the function that unloads the wheels; `has_rate` is true if an estimator in the code gives the rate.
+    pub(super) fn unload_layout(&self, stored: &StoredMomentum, has_rate: bool) -> Option<CallLayout> {
         let unit = self.unloading.as_ref()?;
         let wheels = self.wheels.iter().map(wheel_channel);
-        let stored = Channel::from_quantity(FlightQuantity::StoredMomentum, 3, unit.law.above);
-        let (inputs, output) = match &unit.device {
+        let mut inputs: Vec<Channel> = stored.channel(unit.law.above).into_iter().collect();
+        if !has_rate {
+            inputs.push(Channel::from_quantity(FlightQuantity::Rate, 3, 1e-3));
+        }
+        let output = match &unit.device {
             UnloadingDevice::Magnetorquers(_) => {
                 let about = "Last measured magnetic field, body axes (T); 0 before";
                 let field = Channel::from_quantity(FlightQuantity::Field, 3, 3e-5).with_about(about);
-                (vec![stored, field], moment_channel())
+                inputs.push(field);
+                moment_channel()
             }
-            UnloadingDevice::Jets(pairs, _) => (vec![stored], on_time_channel(pairs)),
+            UnloadingDevice::Jets(pairs, _) => on_time_channel(pairs),
         };
         let about = "Begins a cycle in which the wheels are unloaded, at its period; at one time with the step it may come before or after it.";
         Some(CallLayout {
@@ -232,19 +250,17 @@ impl UnloadingUnit {
     }
 
     /// Begins a cycle, and returns the words of the moments or on-times.
-    fn begin(&mut self, inputs: &[u64], held: Option<Vector3>) -> Vec<u64> {
-        let mut words = WordReader::new(inputs);
-        let stored = vector(&mut words);
+    fn begin(&mut self, stored: &Vector3, words: &mut WordReader<'_>, held: Option<Vector3>) -> Vec<u64> {
         match (&self.device, held) {
             (UnloadingDevice::Magnetorquers(_), Some(held)) => vector_words(&held).to_vec(),
             (UnloadingDevice::Magnetorquers(limits), None) => {
-                let (torque, field) = (self.law.torque(&stored), vector(&mut words));
+                let (torque, field) = (self.law.torque(stored), vector(words));
                 let moment = moment_of_torque(&torque, &field, limits);
                 self.counter = torque_of_moment(&moment, &field);
                 vector_words(&moment).to_vec()
             }
             (UnloadingDevice::Jets(pairs, torques), _) => {
-                let torque = self.law.torque(&stored);
+                let torque = self.law.torque(stored);
                 let demands = [torque.x, torque.y, torque.z];
                 let on_times = [0, 1, 2].map(|axis: usize| pairs[axis].on_time_of_torque(demands[axis]));
                 let [roll, pitch, yaw] = [0, 1, 2].map(|axis: usize| torques[axis].impulse(on_times[axis]));

@@ -10,7 +10,7 @@ use flexsc_core::record::AttitudeEstimate;
 use flexsc_flight::attitude_estimator::AttitudeEstimator;
 use flexsc_flight::attitude_filter::{AttitudeBiasFilter, GyroNoise};
 use flexsc_flight::attitude_gate::AttitudeGate;
-use flexsc_flight::attitude_history::{AttitudeHistoryEntry, DelayedObservation};
+use flexsc_flight::attitude_history::{AttitudeHistoryEntry, DelayedObservation, REFUSAL_COUNTERS};
 use flexsc_flight::attitude_observation::{AttitudeObservation, ObservationKind};
 use flexsc_flight::matrix6::Matrix6x3;
 use flexsc_flight::quaternion::Quaternion;
@@ -167,8 +167,11 @@ impl AttitudeUnit {
         let mut outputs =
             vec![attitude(), Channel::real("rate", "Estimated rate (rad/s)", 3, 1.0), status("gyro")];
         outputs.extend(self.correctors.iter().map(|corrector| status(&corrector.name)));
+        let refused =
+            |name: String| Channel::integer(&name, "Number of readings refused since the start", 1, 0);
         outputs.extend([
-            Channel::integer("refused", "Number of readings refused since the start", 1, 0),
+            refused("refused".to_owned()),
+            refused("gyro_refused".to_owned()),
             Channel::real("age", "Time since the last correction, or since the start (s)", 1, 1.0),
             Channel::real("innovation", "Innovation of the last correction, body axes (rad)", 3, 1.0),
             Channel::real(
@@ -179,6 +182,8 @@ impl AttitudeUnit {
             ),
             Channel::real("deviation", "Standard deviation of the attitude about each axis (rad)", 3, 1.0),
         ]);
+        outputs
+            .extend(self.correctors.iter().map(|corrector| refused(format!("{}_refused", corrector.name))));
         let sample = CallLayout {
             name: "sample",
             about: "Takes a sample of the sensors.",
@@ -219,7 +224,7 @@ impl AttitudeUnit {
         if is_valid {
             statuses[0] = estimator.take_gyro(now, self.gyro.1, rate, entries, observations);
         }
-        for (corrector, status) in self.correctors.iter().zip(&mut statuses[1..]) {
+        for (sensor, (corrector, status)) in (1..).zip(self.correctors.iter().zip(&mut statuses[1..])) {
             let is_valid = words.flag();
             let mut observation = corrector.observation;
             if observation.kind == ObservationKind::Attitude {
@@ -229,20 +234,28 @@ impl AttitudeUnit {
                 observation.inertial = vector(&mut words);
             }
             if is_valid {
+                let latency = corrector.latency;
                 *status =
-                    estimator.take_observation(now, corrector.latency, &observation, entries, observations);
+                    estimator.take_observation(sensor, now, latency, &observation, entries, observations);
             }
         }
         let (attitude, rate) = (estimator.attitude(now, entries), estimator.rate(entries));
         let mut outputs = quaternion_words(&attitude).to_vec();
         outputs.extend(vector_words(&rate));
         outputs.extend(statuses.into_iter().map(|status| status as u64));
-        outputs.extend([estimator.history.refused, estimator.age(now).to_bits()]);
+        let history = &estimator.history;
+        outputs.extend([history.refusals(), history.refused[0], estimator.age(now).to_bits()]);
         outputs.extend(vector_words(&estimator.correction.innovation));
         outputs.push((estimator.correction.nis / AttitudeEstimate::MEASUREMENTS).to_bits());
         outputs.extend(vector_words(&estimator.deviation(entries)));
+        outputs.extend((1..).zip(&self.correctors).map(|(sensor, _)| history.refused[counter(sensor)]));
         outputs
     }
+}
+
+/// Returns the index of the counter of refused readings of a sensor.
+pub fn counter(sensor: usize) -> usize {
+    sensor.min(REFUSAL_COUNTERS - 1)
 }
 
 /// Returns the quantity that a sensor measures.

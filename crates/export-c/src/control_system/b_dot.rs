@@ -23,9 +23,10 @@ pub struct FieldUnit {
 impl FieldUnit {
     /// Returns the rate of change by the magnetometer of a scenario.
     pub(super) fn new(scenario: &Scenario) -> Result<Self, NotExportable> {
-        let sensor = scenario.sensor.iter().position(|sensor| sensor.measures_field());
         let missing = || NotExportable::new("law.b_dot", "needs a `[sensor.magnetometer]`");
-        Ok(Self { sensor: sensor.ok_or_else(missing)?, field: FieldRate::NONE })
+        let (sensor, most_age) =
+            scenario.sensor.field_source(scenario.study.law_period).ok_or_else(missing)?;
+        Ok(Self { sensor, field: FieldRate::new(most_age) })
     }
 
     /// Returns the function: a sample of the field.
@@ -120,6 +121,6 @@ impl BDotSystem {
         if call == 0 {
             return self.field.take(now, inputs);
         }
-        vector_words(&self.laws.moment(&self.field.field.rate)).to_vec()
+        vector_words(&self.laws.moment(&self.field.field.rate_at(now))).to_vec()
     }
 }

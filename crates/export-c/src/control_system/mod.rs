@@ -12,6 +12,7 @@ mod mode_system;
 mod rate_unit;
 mod relays;
 mod sampled_laws;
+mod stored_momentum;
 
 use std::fmt;
 
@@ -20,7 +21,7 @@ use flexsc_core::control::law::LawKind;
 use flexsc_flight::ticks::Ticks;
 
 pub use actuation::{Actuation, UnloadingDevice};
-pub use attitude_unit::{AttitudeUnit, Corrector};
+pub use attitude_unit::{AttitudeUnit, Corrector, counter};
 pub use b_dot::{BDotLaws, BDotSystem, FieldUnit};
 pub use channel::{CallLayout, Channel, NumberKind, WordReader};
 pub use excluded_parts::ExcludedPart;
@@ -31,6 +32,7 @@ pub use mode_system::{LawsOfMode, ModeLaws, ModeSystem};
 pub use rate_unit::RateUnit;
 pub use relays::Relays;
 pub use sampled_laws::SampledLaws;
+pub use stored_momentum::StoredMomentum;
 
 /// Reason for which a scenario's control system cannot be exported.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -8,9 +8,10 @@ use flexsc_flight::mode_condition::ConditionSource;
 use flexsc_flight::mode_readings::{distance, largest_size, norm};
 use flexsc_flight::quaternion::Quaternion;
 use flexsc_flight::ticks::Ticks;
+use flexsc_flight::vector3::Vector3;
 
 use super::attitude_unit::{AttitudeUnit, quaternion};
-use super::{Channel, WordReader};
+use super::{Channel, StoredMomentum, WordReader};
 
 /// Formula of a reading, with the names of the channels that it reads.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,7 +39,12 @@ pub struct ModeInputs {
 
 impl ModeInputs {
     /// Returns the inputs for the readings of modes; `has_filter` is true if an attitude filter gives the estimates.
-    pub(super) fn new(scenario: &Scenario, tables: &ModeTables, has_filter: bool) -> Self {
+    pub(super) fn new(
+        scenario: &Scenario,
+        tables: &ModeTables,
+        stored: &StoredMomentum,
+        has_filter: bool,
+    ) -> Self {
         let mut inputs = Self { channels: Vec::new(), formulas: Vec::new(), axes: scenario.study.axes.len() };
         if has_filter {
             let about = "Target attitude of the present mode: quaternion w, x, y, z";
@@ -50,7 +56,7 @@ impl ModeInputs {
             let limit = own.map(|step| step.limit.abs()).fold(0.0, f64::max);
             let scale = if limit > 0.0 { limit } else { 1.0 };
             let formula = match *reading {
-                ModeReading::Known(quantity) => inputs.known(scenario, quantity, scale, has_filter),
+                ModeReading::Known(quantity) => inputs.known(scenario, quantity, (scale, stored), has_filter),
                 ModeReading::Truth(exit) => inputs.truth(tables, exit),
             };
             inputs.formulas.push(formula);
@@ -63,7 +69,7 @@ impl ModeInputs {
         &mut self,
         scenario: &Scenario,
         quantity: ModeQuantity,
-        scale: f64,
+        (scale, stored): (f64, &StoredMomentum),
         has_filter: bool,
     ) -> ReadingFormula {
         let formula = match quantity.formula() {
@@ -76,7 +82,14 @@ impl ModeInputs {
             let given = |vector: &FlightQuantity| {
                 !has_filter || !matches!(vector, FlightQuantity::Angle | FlightQuantity::Rate)
             };
-            formula.vectors().filter(given).for_each(|vector| self.array(scenario, vector, scale));
+            let sources = |vector: FlightQuantity| match (vector, stored) {
+                (FlightQuantity::StoredMomentum, StoredMomentum::Wheels { .. }) => {
+                    vec![FlightQuantity::WheelSpeed, FlightQuantity::Rate]
+                }
+                _ => vec![vector],
+            };
+            let vectors = formula.vectors().flat_map(sources).filter(given);
+            vectors.for_each(|vector| self.array(scenario, vector, scale));
             return ReadingFormula::Known(formula);
         }
         let sensor_name = |index: usize| {
@@ -184,7 +197,13 @@ impl ModeInputs {
     }
 
     /// Returns the readings.
-    pub(super) fn readings(&self, now: Ticks, inputs: &[u64], filter: Option<&AttitudeUnit>) -> Vec<f64> {
+    pub(super) fn readings(
+        &self,
+        now: Ticks,
+        inputs: &[u64],
+        stored: &StoredMomentum,
+        filter: Option<&AttitudeUnit>,
+    ) -> Vec<f64> {
         let given = |name: &str| -> Vec<f64> {
             let mut words = WordReader::new(inputs);
             for channel in &self.channels {
@@ -195,7 +214,7 @@ impl ModeInputs {
             }
             Vec::new()
         };
-        let array = |quantity: FlightQuantity| match (filter, quantity) {
+        let estimate = |quantity: FlightQuantity| match (filter, quantity) {
             (Some(unit), FlightQuantity::Rate) => {
                 let rate = unit.estimator.rate(&unit.entries);
                 vec![rate.x, rate.y, rate.z]
@@ -206,6 +225,14 @@ impl ModeInputs {
                 vec![angle.x, angle.y, angle.z]
             }
             _ => given(quantity.channel()),
+        };
+        let array = |quantity: FlightQuantity| match (quantity, stored) {
+            (FlightQuantity::StoredMomentum, StoredMomentum::Wheels { .. }) => {
+                let rate = vector_of(&estimate(FlightQuantity::Rate));
+                let momentum = stored.momentum(&given(FlightQuantity::WheelSpeed.channel()), &rate);
+                vec![momentum.x, momentum.y, momentum.z]
+            }
+            _ => estimate(quantity),
         };
         let value = |formula: &ReadingFormula| match formula {
             ReadingFormula::Flag(name) => {
@@ -227,4 +254,10 @@ impl ModeInputs {
         };
         self.formulas.iter().map(value).collect()
     }
+}
+
+/// Returns a list of three numbers as a vector.
+fn vector_of(list: &[f64]) -> Vector3 {
+    let [x, y, z] = [0, 1, 2].map(|axis| list.get(axis).copied().unwrap_or(0.0));
+    Vector3 { x, y, z }
 }

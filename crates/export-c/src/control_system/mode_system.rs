@@ -16,7 +16,7 @@ use super::actuation::{Actuation, Executing, are_jets, are_magnetorquers, are_wh
 use super::attitude_unit::{AttitudeUnit, quaternion, vector, vector_words};
 use super::b_dot::{BDotLaws, FieldUnit};
 use super::mode_inputs::ModeInputs;
-use super::{CallLayout, Channel, NotExportable, SampledLaws, WordReader};
+use super::{CallLayout, Channel, NotExportable, SampledLaws, StoredMomentum, WordReader};
 
 /// Laws of a mode.
 #[derive(Clone, Debug)]
@@ -130,6 +130,8 @@ pub struct ModeSystem {
     moment: Vector3,
     /// True if magnetorquers execute commands of laws, and do not unload wheels: then they have no moment in other modes.
     pub clears_moment: bool,
+    /// Momentum stored in the rotors.
+    pub stored: StoredMomentum,
     /// Inputs of the supervisor.
     pub inputs: ModeInputs,
     /// True if each mode has its target: at a change the angles move from one to the other.
@@ -174,7 +176,8 @@ impl ModeSystem {
         let clears_moment = executing.iter().any(|own| own.has(are_magnetorquers));
         let estimator = AttitudeUnit::new(scenario).filter(|_| scenario.study.axes.len() == 3);
         let moves_angles = has_modes && estimator.is_some();
-        let inputs = ModeInputs::new(scenario, &tables, moves_angles);
+        let stored = StoredMomentum::new(scenario);
+        let inputs = ModeInputs::new(scenario, &tables, &stored, moves_angles);
         let supervisor = ModeSupervisor::start(Ticks::default(), &mut tables.modes, &mut tables.exits);
         let layout = Arc::new(StepLayout::new(&modes, estimator.is_some(), &actuation));
         Ok(Self {
@@ -186,6 +189,7 @@ impl ModeSystem {
             actuation,
             moment: Vector3::ZERO,
             clears_moment,
+            stored,
             inputs,
             moves_angles,
             moved: None,
@@ -253,7 +257,7 @@ impl ModeSystem {
         };
         let estimator = self.estimator.iter().flat_map(AttitudeUnit::calls);
         let field = self.field.iter().map(|_| FieldUnit::layout());
-        let unload = self.actuation.unload_layout();
+        let unload = self.actuation.unload_layout(&self.stored, self.estimator.is_some());
         estimator.chain(field).chain([enter, supervise]).chain(unload).chain([step]).collect()
     }
 
@@ -291,7 +295,8 @@ impl ModeSystem {
         let is_detumbling =
             self.modes.get(self.supervisor.active).is_some_and(|mode| mode.start.b_dot().is_some());
         let held = is_detumbling.then_some(self.moment);
-        let outputs = self.actuation.unload(inputs, held);
+        let rate = self.estimator.as_ref().map(|unit| unit.estimator.rate(&unit.entries));
+        let outputs = self.actuation.unload(inputs, &self.stored, rate, held);
         if self.actuation.unloads_by_magnetorquers() && held.is_none() {
             self.moment = vector(&mut WordReader::new(&outputs));
         }
@@ -317,7 +322,7 @@ impl ModeSystem {
 
     /// Tests the conditions of the present mode, and returns the words of the outputs.
     fn supervise(&mut self, now: Ticks, inputs: &[u64]) -> Vec<u64> {
-        let readings = self.inputs.readings(now, inputs, self.estimator.as_ref());
+        let readings = self.inputs.readings(now, inputs, &self.stored, self.estimator.as_ref());
         let ModeTables { modes, exits, steps, .. } = &mut self.tables;
         let ModeTest { has_changed, is_chattering, .. } =
             self.supervisor.test(now, &readings, modes, exits, steps);
@@ -372,7 +377,7 @@ impl ModeSystem {
             self.moment = Vector3::ZERO;
         }
         if let (ModeLaws::BDot(laws), Some(unit)) = (&mode.current, &self.field) {
-            self.moment = laws.moment(&unit.field.rate);
+            self.moment = laws.moment(&unit.field.rate_at(now));
             self.actuation.release();
         }
         if let (ModeLaws::OnEstimates(laws), Some(Some(own))) = (&mut mode.current, layout.laws.get(active)) {
@@ -453,6 +458,8 @@ fn laws_of_mode(scenario: &Scenario, index: usize, has_modes: bool) -> Result<Mo
     // One filter and the same actuators serve the laws of all modes.
     laws.read_estimates();
     laws.only_command();
+    // Wheels that do not act in the mode store momentum all the same.
+    laws.stored = StoredMomentum::new(scenario);
     Ok(ModeLaws::OnEstimates(Box::new(laws)))
 }
 

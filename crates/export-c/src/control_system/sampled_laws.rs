@@ -15,11 +15,11 @@ use flexsc_flight::torque_distribution;
 use flexsc_flight::vector3::Vector3;
 
 use super::actuation::Actuation;
-use super::attitude_unit::{AttitudeUnit, quaternion, vector};
+use super::attitude_unit::{AttitudeUnit, quaternion};
 use super::kalman_unit::KalmanUnit;
 use super::laws_of_axes::{LawsOfAxes, compensator_commands, laws_of_axes};
 use super::rate_unit::RateUnit;
-use super::{CallLayout, Channel, NotExportable, NumberKind, WordReader};
+use super::{CallLayout, Channel, NotExportable, NumberKind, StoredMomentum, WordReader};
 
 /// Laws of a scenario that decide at their period.
 #[derive(Clone, Debug)]
@@ -30,6 +30,8 @@ pub struct SampledLaws {
     pub laws: LawsOfAxes,
     /// Inertia tensor by which commanded accelerations become torques (kg m²).
     pub inertia: Matrix3,
+    /// Momentum stored in the rotors.
+    pub stored: StoredMomentum,
     /// Actuators that give the commands.
     pub actuation: Actuation,
     /// Attitude filter that the laws read; without one the estimates are inputs.
@@ -56,9 +58,9 @@ impl SampledLaws {
         let inertia = to_matrix3(scenario.study.distribution(scenario).inertia());
         let estimator = AttitudeUnit::new(scenario).filter(|_| laws.len() == 3);
         let (actuation, rate_filter) = (Actuation::new(scenario), RateUnit::new(scenario, laws.len()));
-        let period = cycle.seconds();
+        let (period, stored) = (cycle.seconds(), StoredMomentum::new(scenario));
         let mut laws =
-            Self { period, laws: of_axes, inertia, actuation, estimator, filter: None, rate_filter };
+            Self { period, laws: of_axes, inertia, stored, actuation, estimator, filter: None, rate_filter };
         laws.filter = KalmanUnit::new(scenario, laws.reads_mode());
         Ok(laws)
     }
@@ -100,12 +102,13 @@ impl SampledLaws {
         matches!(&self.laws, LawsOfAxes::StateSpace(laws) if laws.iter().any(|law| !law.sources.is_empty()))
     }
 
-    /// Returns the number of wheels whose speeds a compensator reads.
+    /// Returns the number of wheels whose speeds are inputs: of accelerations for their momentum, and as a compensator reads them.
     pub fn speed_count(&self) -> usize {
-        let LawsOfAxes::StateSpace(laws) = &self.laws else { return 0 };
+        let stored = if self.is_acceleration() { self.stored.wheel_count() } else { 0 };
+        let LawsOfAxes::StateSpace(laws) = &self.laws else { return stored };
         let sources = laws.iter().flat_map(|law| &law.sources);
         let speeds = sources.filter(|source| source.quantity == CompensatorQuantity::WheelSpeed);
-        speeds.map(|source| source.index + 1).max().unwrap_or(0)
+        speeds.map(|source| source.index + 1).fold(stored, usize::max)
     }
 
     /// Returns true if the extra loop on the dominant mode acts about any axis.
@@ -123,7 +126,7 @@ impl SampledLaws {
         let estimator = self.estimator.iter().flat_map(AttitudeUnit::calls);
         let filter = self.filter.iter().flat_map(KalmanUnit::calls);
         let rates = self.rate_filter.iter().map(RateUnit::layout);
-        let unload = self.actuation.unload_layout();
+        let unload = self.actuation.unload_layout(&self.stored, self.estimator.is_some());
         estimator.chain(filter).chain(rates).chain(unload).chain([self.layout()]).collect()
     }
 
@@ -142,7 +145,8 @@ impl SampledLaws {
     pub(super) fn call(&mut self, call: usize, now: Ticks, inputs: &[u64]) -> Vec<u64> {
         let (estimators, step) = (self.estimator_calls(), self.step_index());
         if (estimators..step).contains(&call) {
-            return self.actuation.unload(inputs, None);
+            let rate = self.estimator.as_ref().map(|unit| unit.estimator.rate(&unit.entries));
+            return self.actuation.unload(inputs, &self.stored, rate, None);
         }
         if let Some(filter) = self.filter.as_mut().filter(|_| call < step) {
             return filter.call(call, inputs);
@@ -195,7 +199,7 @@ impl SampledLaws {
         }
         if self.is_acceleration() {
             inputs.push(Channel::from_quantity(FlightQuantity::ReferenceAcceleration, axes, 1e-4));
-            inputs.push(Channel::from_quantity(FlightQuantity::StoredMomentum, 3, 1.0));
+            inputs.extend(self.stored.channel(1.0).filter(|_| self.stored == StoredMomentum::Input));
             let about = "Acceleration about each axis (rad/s\u{b2})";
             outputs.push(Channel::real("acceleration", about, axes, 1.0));
         }
@@ -271,10 +275,10 @@ impl SampledLaws {
         };
         set(words.list(axes), |reference| &mut reference.angle);
         set(words.list(axes), |reference| &mut reference.rate);
-        let mut stored = Vector3::ZERO;
+        let mut given = Vec::new();
         if self.is_acceleration() {
             set(words.list(axes), |reference| &mut reference.acceleration);
-            stored = vector(&mut words);
+            given = words.list(if self.stored == StoredMomentum::Input { 3 } else { 0 });
         }
         let speeds = words.list(self.speed_count());
         let commands: Vec<f64> = match &mut self.laws {
@@ -312,6 +316,7 @@ impl SampledLaws {
                 Vector3 { x, y, z }
             };
             let (acceleration, rate) = (vector(&|axis| torque[axis]), vector(&|axis| motions[axis].rate));
+            let stored = self.stored.momentum(if given.is_empty() { &speeds } else { &given }, &rate);
             let of_axes = torque_distribution::torque(&self.inertia, &acceleration, &rate, &stored);
             torque = [of_axes.x, of_axes.y, of_axes.z][..axes].to_vec();
             outputs.extend_from_slice(&torque);

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use super::initialiser::initialiser;
 use super::signature::signature;
-use super::{Plan, parameters};
-use crate::control_system::{Actuation, UnloadingDevice};
+use super::{Plan, momentum_calls, parameters};
+use crate::control_system::{Actuation, StoredMomentum, UnloadingDevice};
 
 /// Returns the paths of the functions of the flight code that the actuators call; `are_changes` are the kinds of commands that jets
 /// execute, changes of the rate or torques.
@@ -170,9 +170,18 @@ pub fn jets(own: &Actuation, is_change: bool, indent: &str, from: &str, text: &m
     }
 }
 
+/// Wheels that may be unloaded.
+pub struct UnloadedWheels<'a> {
+    pub actuation: &'a Actuation,
+    pub stored: &'a StoredMomentum,
+    /// Number of entries of the attitude filter that gives the rate; `None` if the rate is an input.
+    pub entries: Option<usize>,
+}
+
 /// Writes the function that begins a cycle of the unloading. With B-dot laws `state->moment` has the moment of the magnetorquers, and
 /// `held` is the condition in C under which these laws command it.
-pub fn unload(plan: &Plan<'_>, own: &Actuation, held: Option<&str>, text: &mut String) {
+pub fn unload(plan: &Plan<'_>, wheels: &UnloadedWheels<'_>, held: Option<&str>, text: &mut String) {
+    let own = wheels.actuation;
     let Some(unit) = &own.unloading else { return };
     let Some(call) = plan.calls.iter().find(|call| call.name == "unload") else { return };
     let prefix = plan.prefix;
@@ -183,7 +192,14 @@ pub fn unload(plan: &Plan<'_>, own: &Actuation, held: Option<&str>, text: &mut S
     if super::signature::has_time(plan) {
         text.push_str("    (void)now;\n");
     }
-    let _ = writeln!(text, "    const {prefix}_vector3 stored = {};", vector("stored_momentum"));
+    let rate = match wheels.entries {
+        Some(entries) => {
+            format!("attitude_estimator_rate(&state->estimator, state->entries, {entries})")
+        }
+        None => vector("rate"),
+    };
+    let _ = writeln!(text, "    const {prefix}_vector3 rate = {rate};");
+    momentum_calls::declaration(plan, wheels.stored, "rate", text);
     let torque = "momentum_unloading_torque(&state->unloading, &stored)";
     match &unit.device {
         UnloadingDevice::Magnetorquers(_) => {

@@ -8,7 +8,12 @@ use super::{Plan, parameters};
 use crate::control_system::{BDotLaws, BDotSystem};
 
 /// Functions of the flight code that the exported functions call.
-pub const ROOTS: [&str; 3] = ["b_dot::FieldRate::take", "b_dot::opposing_moment", "b_dot::limited_moment"];
+pub const ROOTS: [&str; 4] = [
+    "b_dot::FieldRate::take",
+    "b_dot::FieldRate::rate_at",
+    "b_dot::opposing_moment",
+    "b_dot::limited_moment",
+];
 
 /// Writes the functions of B-dot laws alone.
 pub fn functions(plan: &Plan<'_>, own: &BDotSystem, text: &mut String) {
@@ -21,7 +26,11 @@ pub fn functions(plan: &Plan<'_>, own: &BDotSystem, text: &mut String) {
     parameters::init(plan, false, text);
     text.push_str("}\n\n");
     sample(plan, text);
-    let _ = writeln!(text, "{}\n{{\n    (void)now;\n    (void)input;", signature(plan, &plan.calls[1]));
+    let _ = writeln!(
+        text,
+        "{}\n{{\n    (void)input;\n    const {prefix}_vector3 field_rate = {CURRENT_RATE};",
+        signature(plan, &plan.calls[1])
+    );
     for axis in 0..3 {
         let _ = writeln!(text, "    output->moment[{axis}] = {};", moment(plan, &own.laws, None, axis));
     }
@@ -41,11 +50,14 @@ pub fn sample(plan: &Plan<'_>, text: &mut String) {
     );
 }
 
-/// Returns the moment along an axis for the present rate of change of the field, in a mode or without modes.
+/// Rate of change of the field at the time of a step, in C.
+pub const CURRENT_RATE: &str = "field_rate_rate_at(&state->field, now)";
+
+/// Returns the moment along an axis for the variable `field_rate`, in a mode or without modes.
 pub fn moment(plan: &Plan<'_>, laws: &BDotLaws, mode: Option<&str>, axis: usize) -> String {
     let [gain, limit] = parameters::b_dot_names(mode, axis);
     let gain = parameters::expression(plan, &gain, laws.gains[axis]);
     let limit = parameters::expression(plan, &limit, laws.limits[axis]);
     let component = ["x", "y", "z"][axis];
-    format!("b_dot_limited_moment(b_dot_opposing_moment({gain}, state->field.rate.{component}), {limit})")
+    format!("b_dot_limited_moment(b_dot_opposing_moment({gain}, field_rate.{component}), {limit})")
 }

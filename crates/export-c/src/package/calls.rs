@@ -8,8 +8,8 @@ use flexsc_flight::gain_schedule::SchedulePoint;
 use super::initialiser::initialiser;
 use super::signature::{about, signature};
 use super::{
-    Plan, actuation_calls, b_dot_calls, compensator_calls, estimator_calls, kalman_calls, parameters,
-    rate_calls,
+    Plan, actuation_calls, b_dot_calls, compensator_calls, estimator_calls, kalman_calls, momentum_calls,
+    parameters, rate_calls,
 };
 use crate::control_system::{ControlSystem, LawsOfAxes, Relays, SampledLaws};
 
@@ -18,7 +18,13 @@ pub fn functions(plan: &Plan<'_>) -> String {
     let mut text = String::new();
     match plan.system {
         ControlSystem::Relays(relays) => of_relays(plan, relays, &mut text),
-        ControlSystem::Sampled(laws) => of_laws(plan, laws, &mut text),
+        ControlSystem::Sampled(laws) => {
+            of_laws(plan, laws, &mut text);
+            // Laws of modes have those of the whole control system.
+            if plan.mode.is_none() {
+                text.insert_str(0, &momentum_calls::constants(plan, &laws.stored, &text));
+            }
+        }
         ControlSystem::BDot(laws) => b_dot_calls::functions(plan, laws, &mut text),
         // The laws of each mode are a control system of their own.
         ControlSystem::Modes(_) => {}
@@ -133,7 +139,7 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     if let Some(unit) = &laws.rate_filter {
         rate_calls::sample(plan, unit, text);
     }
-    actuation_calls::unload(plan, &laws.actuation, None, text);
+    unload(plan, laws, text);
     let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[laws.step_index()]));
     if let Some(unit) = &laws.estimator {
         let _ = writeln!(
@@ -166,6 +172,16 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
         actuation_calls::jets(&laws.actuation, laws.commands_changes(), "    ", "output->", text);
     }
     text.push_str("}\n");
+}
+
+/// Writes the function that unloads the wheels.
+fn unload(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
+    let unloading = actuation_calls::UnloadedWheels {
+        actuation: &laws.actuation,
+        stored: &laws.stored,
+        entries: laws.estimator.as_ref().map(|unit| unit.entries.len()),
+    };
+    actuation_calls::unload(plan, &unloading, None, text);
 }
 
 /// Writes the steps of the laws about the axes.
@@ -222,7 +238,7 @@ fn constants(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     if laws.is_acceleration() {
         let _ = writeln!(
             text,
-            "/* Inertia tensor (kg m^2). */\nstatic const {prefix}_matrix3 inertia = {};\n",
+            "/* Inertia tensor (kg m^2), without that of the rotors about their own axes, whose momentum is absolute. */\nstatic const {prefix}_matrix3 inertia = {};\n",
             initialiser(&laws.inertia, prefix)
         );
     }
@@ -327,11 +343,15 @@ fn torque(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
         let rate = vector(&|axis| estimate(laws, "rate", axis));
         format!("    const {prefix}_vector3 rate = {rate};\n")
     };
+    let _ = write!(
+        text,
+        "\n    /* torque of these accelerations */\n    const {prefix}_vector3 acceleration = {};\n{rate}",
+        vector(&|axis| format!("output->{}", about("acceleration", axis, axes))),
+    );
+    momentum_calls::declaration(plan, &laws.stored, "rate", text);
     let _ = writeln!(
         text,
-        "\n    /* torque of these accelerations */\n    const {prefix}_vector3 acceleration = {};\n{rate}    const {prefix}_vector3 stored = ({prefix}_vector3){{ .x = input->stored_momentum[0], .y = input->stored_momentum[1], .z = input->stored_momentum[2] }};\n    \
-         const {prefix}_vector3 torque = torque_distribution_torque(&inertia, &acceleration, &rate, &stored);",
-        vector(&|axis| format!("output->{}", about("acceleration", axis, axes))),
+        "    const {prefix}_vector3 torque = torque_distribution_torque(&inertia, &acceleration, &rate, &stored);"
     );
     for (axis, component) in ["x", "y", "z"].into_iter().enumerate().take(axes) {
         let _ = writeln!(text, "    output->{} = torque.{component};", about("torque", axis, axes));

@@ -8,7 +8,7 @@ use flexsc_flight::attitude_observation::ObservationKind;
 use super::initialiser::initialiser;
 use super::signature::signature;
 use super::{Plan, parameters};
-use crate::control_system::AttitudeUnit;
+use crate::control_system::{AttitudeUnit, counter};
 
 /// Returns the members of the state that the filter needs.
 pub fn members(unit: &AttitudeUnit) -> [(&'static str, &'static str, String); 3] {
@@ -69,7 +69,7 @@ pub fn functions(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
         initialiser(&unit.gyro.1, prefix),
         vector("input->gyro_rate"),
     );
-    for corrector in &unit.correctors {
+    for (sensor, corrector) in (1..).zip(&unit.correctors) {
         let name = &corrector.name;
         let numbers = if corrector.observation.kind == ObservationKind::Attitude {
             format!("        observation.attitude = {};\n", attitude(&format!("input->{name}_attitude")))
@@ -83,7 +83,7 @@ pub fn functions(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
         let _ = writeln!(
             text,
             "    output->{name}_status = 0;\n    if (input->{name}_is_valid) {{\n        const {prefix}_ticks latency = {};\n        {prefix}_attitude_observation observation = {};\n{numbers}        \
-             output->{name}_status = (int64_t)attitude_estimator_take_observation(&state->estimator, now, latency, &observation, {storage});\n    }}",
+             output->{name}_status = (int64_t)attitude_estimator_take_observation(&state->estimator, {sensor}, now, latency, &observation, {storage});\n    }}",
             initialiser(&corrector.latency, prefix),
             initialiser(&corrector.observation, prefix),
         );
@@ -93,11 +93,19 @@ pub fn functions(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
         "    const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n    \
          const {prefix}_vector3 rate = attitude_estimator_rate(&state->estimator, state->entries, {entries});\n{output}    \
          output->rate[0] = rate.x;\n    output->rate[1] = rate.y;\n    output->rate[2] = rate.z;\n    \
-         output->refused = (int64_t)state->estimator.history.refused;\n    output->age = attitude_estimator_age(&state->estimator, now);\n    \
+         output->refused = (int64_t)attitude_history_refusals(&state->estimator.history);\n    output->gyro_refused = (int64_t)state->estimator.history.refused[0];\n    output->age = attitude_estimator_age(&state->estimator, now);\n    \
          output->innovation[0] = state->estimator.correction.innovation.x;\n    output->innovation[1] = state->estimator.correction.innovation.y;\n    \
          output->innovation[2] = state->estimator.correction.innovation.z;\n    output->nis = state->estimator.correction.nis / {measurements};\n    \
          const {prefix}_vector3 deviation = attitude_estimator_deviation(&state->estimator, state->entries, {entries});\n    \
-         output->deviation[0] = deviation.x;\n    output->deviation[1] = deviation.y;\n    output->deviation[2] = deviation.z;\n}}\n",
+         output->deviation[0] = deviation.x;\n    output->deviation[1] = deviation.y;\n    output->deviation[2] = deviation.z;",
         measurements = crate::translate::float_literal(AttitudeEstimate::MEASUREMENTS),
     );
+    for (sensor, corrector) in (1..).zip(&unit.correctors) {
+        let (name, counter) = (&corrector.name, counter(sensor));
+        let _ = writeln!(
+            text,
+            "    output->{name}_refused = (int64_t)state->estimator.history.refused[{counter}];"
+        );
+    }
+    text.push_str("}\n\n");
 }

@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::{Plan, actuation_calls, compensator_calls, estimator_calls, kalman_calls, parameters};
+use super::{
+    Plan, actuation_calls, compensator_calls, estimator_calls, kalman_calls, parameters, start_values,
+};
 use crate::control_system::{Channel, ControlSystem, LawsOfAxes, NumberKind};
 use crate::translate::Translation;
 
@@ -42,6 +44,7 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
         super::signature::init_signature(plan)
     );
     text.push_str(&parameters::declarations(plan));
+    text.push_str(&start_values::declaration(plan));
     for call in plan.calls {
         let _ = writeln!(text, "/* {} */\n{};\n", call.about, super::signature::signature(plan, call));
     }

@@ -4,7 +4,7 @@ use flexsc_core::Scenario;
 use flexsc_core::numerics::time::Span;
 use serde_json::{Value, json};
 
-use super::{Plan, main_loop};
+use super::{Plan, main_loop, start_values};
 use crate::control_system::{CallLayout, Channel, NumberKind};
 
 /// Returns the interface as JSON.
@@ -58,6 +58,7 @@ fn function(plan: &Plan<'_>, call: &CallLayout) -> Value {
         "period_s": call.period,
         "inputs": list(&call.inputs),
         "outputs": list(&call.outputs),
+        "run_0": start_values::of_call(plan, call),
     })
 }
 

@@ -13,10 +13,12 @@ mod interface;
 mod kalman_calls;
 mod main_loop;
 mod modes;
+mod momentum_calls;
 mod parameters;
 mod rate_calls;
 mod signature;
 mod source;
+mod start_values;
 mod static_files;
 
 use flexsc_core::Scenario;
@@ -98,6 +100,8 @@ struct Plan<'a> {
     excluded_parts: &'a [ExcludedPart],
     /// Numbers that are tuned in flight.
     parameters: &'a [parameters::FlightParameter],
+    /// Inputs with which estimators start in run 0; `None` without an estimator, or without vectors.
+    run_start: Option<&'a [u64]>,
     /// Name of the mode whose laws are written; `None` of the whole control system.
     mode: Option<&'a str>,
 }
@@ -142,6 +146,7 @@ pub fn export(
         calls: &calls,
         excluded_parts: &excluded_parts,
         parameters: &tuned,
+        run_start: start_values::find(&calls, &vectors),
         mode: None,
     };
     let (functions, state) = match &system {

@@ -8,7 +8,7 @@ use flexsc_core::control::operation::{ModeFormula, ModeQuantity};
 
 use super::initialiser::initialiser;
 use super::signature::{has_time, init_signature, signature};
-use super::{Plan, actuation_calls, b_dot_calls, calls, estimator_calls, header, parameters};
+use super::{Plan, actuation_calls, b_dot_calls, calls, estimator_calls, header, momentum_calls, parameters};
 use crate::control_system::{CallLayout, Channel, ControlSystem, ModeSystem, ReadingFormula, SampledLaws};
 
 /// Laws of one mode as a control system of their own.
@@ -130,8 +130,12 @@ pub fn functions(plan: &Plan<'_>, modes: &ModeSystem) -> String {
         detumbling.map(|(mode, _)| format!("state->supervisor.active == {mode}")).collect();
     let held = detumbling.join(" || ");
     let held = Some(held.as_str()).filter(|held| !held.is_empty());
-    actuation_calls::unload(plan, &modes.actuation, held, &mut text);
+    let entries = modes.estimator.as_ref().map(|unit| unit.entries.len());
+    let unloading =
+        actuation_calls::UnloadedWheels { actuation: &modes.actuation, stored: &modes.stored, entries };
+    actuation_calls::unload(plan, &unloading, held, &mut text);
     step(plan, modes, &parts, &mut text);
+    text.insert_str(0, &momentum_calls::constants(plan, &modes.stored, &text));
     text
 }
 
@@ -191,6 +195,10 @@ fn init(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
         let identity = format!("({prefix}_quaternion){{ .w = 1.0, .x = 0.0, .y = 0.0, .z = 0.0 }}");
         let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
         let _ = writeln!(text, "    start_filter(state, now, {identity}, {zero});");
+    }
+    if let Some(unit) = &modes.field {
+        let field = initialiser(&unit.field, prefix);
+        let _ = writeln!(text, "    state->field = ({prefix}_field_rate){field};");
     }
     text.push_str("    memcpy(state->modes, mode_list, sizeof state->modes);\n");
     if !modes.tables.exits.is_empty() {
@@ -261,6 +269,7 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
             _ => false,
         })
     };
+    let reads_wheels = reads(FlightQuantity::StoredMomentum) && modes.stored.wheel_count() > 0;
     if let Some(entries) = entries.filter(|_| modes.moves_angles) {
         let _ = writeln!(
             text,
@@ -271,13 +280,23 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
         if reads(FlightQuantity::Angle) {
             text.push_str("    const double angle[3] = { rotation.x, rotation.y, rotation.z };\n");
         }
-        if reads(FlightQuantity::Rate) {
+        if reads(FlightQuantity::Rate) || reads_wheels {
             let _ = writeln!(
                 text,
                 "    const {prefix}_vector3 estimated_rate = attitude_estimator_rate(&state->estimator, state->entries, {entries});\n    \
                  const double rate[3] = {{ estimated_rate.x, estimated_rate.y, estimated_rate.z }};"
             );
         }
+    }
+    if reads_wheels {
+        if !modes.moves_angles {
+            let _ = writeln!(
+                text,
+                "    const {prefix}_vector3 estimated_rate = {{ .x = input->rate[0], .y = input->rate[1], .z = input->rate[2] }};"
+            );
+        }
+        momentum_calls::declaration(plan, &modes.stored, "estimated_rate", text);
+        text.push_str("    const double stored_momentum[3] = { stored.x, stored.y, stored.z };\n");
     }
     if modes.inputs.channels.is_empty() {
         text.push_str("    (void)input;\n");
@@ -361,7 +380,7 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
         );
     }
     let inner_time = |part: &ModePart| has_time(&Plan { system: &part.system, ..*plan });
-    if filter.is_none() && !parts.iter().any(inner_time) {
+    if filter.is_none() && modes.field.is_none() && !parts.iter().any(inner_time) {
         text.push_str("    (void)now;\n");
     }
     if parts.is_empty() {
@@ -436,7 +455,11 @@ fn b_dot_cases(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
     for (index, laws) in
         modes.modes.iter().enumerate().filter_map(|(index, mode)| Some((index, mode.start.b_dot()?)))
     {
-        let _ = writeln!(text, "    case {index}:");
+        let _ = writeln!(
+            text,
+            "    case {index}: {{\n        const {prefix}_vector3 field_rate = {};",
+            b_dot_calls::CURRENT_RATE
+        );
         for (axis, component) in ["x", "y", "z"].into_iter().enumerate() {
             let moment = b_dot_calls::moment(plan, laws, Some(&modes.modes[index].name), axis);
             let _ = writeln!(text, "        state->moment.{component} = {moment};");
@@ -447,7 +470,7 @@ fn b_dot_cases(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
                 "        state->unloading.is_active = false;\n        state->counter = ({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }};"
             );
         }
-        text.push_str("        break;\n");
+        text.push_str("        break;\n    }\n");
     }
 }
 

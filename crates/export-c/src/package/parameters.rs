@@ -212,7 +212,12 @@ pub fn thresholds(modes: &ModeSystem) -> Vec<(usize, String)> {
             let limited = steps_of(exit).enumerate().filter(|(_, step)| has_limit(&tables.steps[*step]));
             for (place, step) in limited {
                 let (name, next) = (&modes.modes[mode].name, &modes.modes[to].name);
-                found.push((step, format!("{name}_to_{next}_{}", before + place)));
+                let mut name = format!("{name}_to_{next}_{}", before + place);
+                // The modes `a` and `b_to_c` have the words of `a_to_b` and `c`.
+                while found.iter().any(|(_, known)| *known == name) {
+                    name.push('_');
+                }
+                found.push((step, name));
             }
         }
     }

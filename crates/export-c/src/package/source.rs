@@ -2,12 +2,16 @@
 
 use std::fmt::Write as _;
 
-use super::{Plan, actuation_calls, b_dot_calls, compensator_calls, kalman_calls, parameters, rate_calls};
+use super::{
+    Plan, actuation_calls, b_dot_calls, compensator_calls, kalman_calls, momentum_calls, parameters,
+    rate_calls, start_values,
+};
 use crate::control_system::{ControlSystem, LawsOfAxes, LawsOfMode};
 use crate::translate::Translation;
 
 /// Functions of an attitude filter.
-const ESTIMATOR: [&str; 9] = [
+const ESTIMATOR: [&str; 10] = [
+    "attitude_history::AttitudeHistory::refusals",
     "attitude_estimator::AttitudeEstimator::start",
     "attitude_estimator::AttitudeEstimator::take_gyro",
     "attitude_estimator::AttitudeEstimator::take_observation",
@@ -42,6 +46,7 @@ pub fn roots(system: &ControlSystem, functions: &str) -> Vec<&'static str> {
     if functions.contains("binary64_infinity") {
         roots.push("binary64::infinity");
     }
+    roots.extend(momentum_calls::root(functions));
     match system {
         ControlSystem::Modes(modes) => {
             roots.extend(SUPERVISOR);
@@ -114,6 +119,7 @@ pub fn source(plan: &Plan<'_>, translation: &Translation, functions: &str) -> St
         plan.version()
     );
     parameters::defaults(plan, &mut text);
+    start_values::definition(plan, &mut text);
     text.push_str(functions);
     text
 }

@@ -29,7 +29,9 @@ pub(super) fn compare_rate(
     decision: &ControlDecision,
     number: usize,
 ) -> Result<(), VectorError> {
-    let Some(known) = field_unit(system).map(|unit| unit.field.rate) else { return Ok(()) };
+    let Some(known) = field_unit(system).map(|unit| unit.field.rate_at(decision.now.ticks())) else {
+        return Ok(());
+    };
     for (axis, own) in decision.axes.iter().zip([known.x, known.y, known.z]) {
         compare(number, "the rate of change of the field", axis.estimate.field_rate, own)?;
     }

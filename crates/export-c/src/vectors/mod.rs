@@ -280,10 +280,10 @@ fn step_inputs(channels: &[Channel], decision: &ControlDecision) -> Vec<u64> {
                 words.extend(references.iter().map(|reference| reference.acceleration));
             }
             FlightQuantity::WheelSpeed => {
-                let known = axes.first().map_or(&[][..], |axis| &axis.wheel_speeds);
+                let known = &decision.rotors.wheel_speeds;
                 words.extend((0..channel.count).map(|wheel| known.get(wheel).copied().unwrap_or(0.0)));
             }
-            FlightQuantity::StoredMomentum => words.extend(decision.stored_momentum),
+            FlightQuantity::StoredMomentum => words.extend(decision.rotors.stored_momentum),
             FlightQuantity::ElasticRate
             | FlightQuantity::ElasticFrequency
             | FlightQuantity::ElasticInfluence => {

@@ -1,9 +1,10 @@
 //! Cycles of the unloading of wheels as calls.
 
 use flexsc_core::UnloadingCall;
+use flexsc_core::control::flight_quantity::FlightQuantity;
 
 use super::{CallVector, VectorError, call, compare_numbers};
-use crate::control_system::{Actuation, ControlSystem};
+use crate::control_system::{Actuation, Channel, ControlSystem};
 
 /// Returns the actuators of a control system that unloads wheels.
 fn unloading(system: &ControlSystem) -> Option<&Actuation> {
@@ -21,11 +22,19 @@ pub(super) fn replay(
     cycle: &UnloadingCall,
     vectors: &mut Vec<CallVector>,
 ) -> Result<(), VectorError> {
-    let Some(actuation) = unloading(system) else { return Ok(()) };
-    let mut inputs = cycle.stored_momentum.map(f64::to_bits).to_vec();
-    if actuation.unloads_by_magnetorquers() {
-        inputs.extend(cycle.field.unwrap_or_default().map(f64::to_bits));
+    if unloading(system).is_none() {
+        return Ok(());
     }
+    let rotors = &cycle.rotors;
+    let layout = system.calls().into_iter().find(|call| call.name == "unload");
+    let values = |channel: Channel| match channel.quantity {
+        Some(FlightQuantity::WheelSpeed) => rotors.wheel_speeds.clone(),
+        Some(FlightQuantity::Rate) => rotors.rate.to_vec(),
+        Some(FlightQuantity::Field) => cycle.field.unwrap_or_default().to_vec(),
+        _ => rotors.stored_momentum.to_vec(),
+    };
+    let inputs =
+        layout.into_iter().flat_map(|layout| layout.inputs).flat_map(values).map(f64::to_bits).collect();
     let outputs = call(system, "unload", cycle.now.ticks(), inputs, vectors);
     let number = vectors.len() - 1;
     if let Some(unit) = unloading(system).and_then(|own| own.unloading.as_ref()) {

@@ -225,3 +225,27 @@ fn laws_that_cannot_run_alone_are_refused() {
         assert!(words.iter().all(|word| why.contains(word)), "{name}: {why}");
     }
 }
+
+#[test]
+fn a_plant_has_the_readings_of_its_sensors() {
+    let plant = Fmu3::new(&shipped("earth-observer", &[("duration", "40.0")]), FmuPart::Plant, false);
+    plant.begin(None);
+    assert_eq!(plant.integers(["gyro.time_whole_s", "gyro.time_fs"]), [0, 0]);
+    plant.step(0.0, 20.45);
+    // The gyro comes each 0.1 s, the star tracker each 0.5 s with a latency of 0.2 s.
+    assert_eq!(plant.integers(["gyro.time_whole_s", "gyro.time_fs"]), [20, 400_000_000_000_000]);
+    assert_eq!(
+        plant.integers(["star_tracker.time_whole_s", "star_tracker.time_fs"]),
+        [20, 200_000_000_000_000]
+    );
+    let near = |one: &str, other: &str, count: usize, within: f64| {
+        for index in 1..=count {
+            let [reading, truth] = plant.reals([&format!("{one}[{index}]"), &format!("{other}[{index}]")]);
+            assert!((reading - truth).abs() < within, "{one}[{index}]: {reading:e} for {truth:e}");
+        }
+    };
+    near("gyro.rate", "state.rate", 3, 1e-4);
+    near("star_tracker.attitude", "state.attitude", 4, 1e-3);
+    let [norm] = plant.reals(["star_tracker.attitude[1]"]);
+    assert!(norm != 0.0);
+}

@@ -83,6 +83,7 @@ if TYPE_CHECKING:
         BudgetLevel,
         IndexBudget,
         LoopMargins,
+        MirrorSensitivity,
         NoiseSpectrum,
         OutputBound,
         OutputNoise,
@@ -134,6 +135,7 @@ __all__ = [
     "LogError",
     "LoopMargins",
     "Metrics",
+    "MirrorSensitivity",
     "NoiseSpectrum",
     "OutputBound",
     "OutputNoise",
@@ -213,8 +215,9 @@ _LATER = {
         "_optimisation": "optimise",
         "_sensitivity": "Sensitivities sensitivities",
         "_signal": "Signal",
-        "results": "BudgetLevel IndexBudget LoopMargins NoiseSpectrum OutputBound OutputNoise PointingBudget "
-        "SettlingTime StabilityMargins TunedMeasure TunedPlant TunedScenario Witness WorstCase",
+        "results": "BudgetLevel IndexBudget LoopMargins MirrorSensitivity NoiseSpectrum OutputBound "
+        "OutputNoise PointingBudget SettlingTime StabilityMargins TunedMeasure TunedPlant TunedScenario "
+        "Witness WorstCase",
         "structure": "StateSpace Structure appendage_from_craig_bampton appendage_from_matrices "
         "appendage_from_nastran from_csv from_nastran from_state_space read_matrices",
     }.items()

@@ -32,6 +32,12 @@ def modes(native: engine.Scenario) -> dict[str, npt.NDArray[np.float64]]:
     }
 
 
+def poles(native: engine.Scenario, speed: float | None) -> dict[str, npt.NDArray[np.float64]]:
+    """Return the columns of `Scenario.poles`."""
+    each = np.array(native.whirl_poles(speed), dtype=np.float64).reshape(-1, 2)
+    return {"frequency": each[:, 0], "damping": each[:, 1]}
+
+
 def outputs(native: engine.Scenario) -> dict[str, npt.NDArray[np.float64]]:
     """Return the weights of `Scenario.outputs`."""
     each = json.loads(native.modes_json()).get("outputs", [])

@@ -207,6 +207,22 @@ class Scenario:
 
         return modes(self._native)
 
+    def poles(self, wheel_speed: float | None = None) -> dict[str, npt.NDArray[np.float64]]:
+        """Return the poles of a spacecraft whose wheels turn with a `mount` or another part: `flexsc modes --speed`.
+
+        Without the loop, `frequency` (rad/s) and `damping` (ratio) of each oscillation in arrays, the modes that
+        whirl among them; empty without `points` of the wheels on such a part.
+
+        Args:
+            wheel_speed: Speed of these wheels (rad/s); if omitted, each has that of the start.
+
+        >>> flexsc.Scenario.example("earth-observer").poles()["frequency"].size
+        0
+        """
+        from flexsc._modes import poles
+
+        return poles(self._native, wheel_speed)
+
     @property
     def outputs(self) -> dict[str, npt.NDArray[np.float64]]:
         """The observed coordinates by name: their weights on rigid angle and modes, of shape (1 + modes,).
@@ -754,6 +770,8 @@ class Scenario:
         *,
         requirement: str | None = None,
         margin: Margin | None = None,
+        signal: str | None = None,
+        window: float | None = None,
         loop: Break = "command",
         least: bool = False,
         points: int = 200,
@@ -769,6 +787,9 @@ class Scenario:
             requirement: A requirement of the scenario, by its name, in place of a metric.
             margin: A stability margin in place of a metric, the least of all loops: `modulus`, `disk`,
                 `gain`, `phase` or `delay`.
+            signal: An output of the linear loop in place of a metric, such as `line_of_sight0_x`: its rms under
+                the imbalance of the wheels at their worst speed.
+            window: Length (s) of windows within which the signal moves against its mean.
             loop: The point at which the loops are opened for a margin.
             least: Whether small values of the metric are bad.
             points: Largest number of points, each of which is a run, or a loop of a margin.
@@ -784,16 +805,16 @@ class Scenario:
         """
         from flexsc.results import WorstCase
 
-        given = {"metric": metric, "requirement": requirement, "margin": margin}
+        given = {"metric": metric, "requirement": requirement, "margin": margin, "signal": signal}
         chosen = [(kind, name) for kind, name in given.items() if name is not None]
         if len(chosen) != 1:
             names = ", ".join(each["name"] for each in self.to_dict().get("requirement", ()))
             there = f"; the requirements are {names}" if names else ""
-            raise ValueError(f"give one of metric, requirement and margin, got {len(chosen)}{there}")
+            raise ValueError(f"give one of metric, requirement, margin and signal, got {len(chosen)}{there}")
         if least and metric is None:
-            raise ValueError("least is for a metric: it is known of a requirement and of a margin")
+            raise ValueError("least is for a metric: it is known of a requirement, a margin and a signal")
         [(kind, name)] = chosen
-        options = {"kind": kind, "name": name, "opened": loop, "is_least": least}
+        options = {"kind": kind, "name": name, "opened": loop, "window": window, "is_least": least}
         return WorstCase._read(analysis("worst", self, **options, points=points, jobs=jobs or 0))
 
     def report(self, path: str | os.PathLike[str], runs: int = 100, *, force: bool = False) -> bool:

@@ -407,15 +407,27 @@ class Client:
         Raises:
             ValueError: No cycle has been received, or the number of values is not that of the axes.
         """
-        if self._cycle is None:
-            raise ValueError("no cycle has been received yet")
         each = [float(values)] if isinstance(values, (int, float)) else [float(value) for value in values]
         quantities = [quantity] * self.axes if isinstance(quantity, str) else list(quantity)
         if len(each) != self.axes or len(quantities) != self.axes:
             given = f"{len(each)} values and {len(quantities)} quantities"
             raise ValueError(f"there are {self.axes} axes, got {given}")
-        codes = [_QUANTITIES.index(word) for word in quantities]
-        self._answer = self._command.pack(self._session, self._cycle.number, *codes, *each)
+        self._reply([_QUANTITIES.index(word) for word in quantities], each)
+
+    def hold(self) -> None:
+        """Answer the cycle without commands: those in force stay, and the run goes on as if the cycle had not been.
+
+        >>> client.hold()
+
+        Raises:
+            ValueError: No cycle has been received.
+        """
+        self._reply([len(_QUANTITIES)] * self.axes, [0.0] * self.axes)
+
+    def _reply(self, codes: Sequence[int], values: Sequence[float]) -> None:
+        if self._cycle is None:
+            raise ValueError("no cycle has been received yet")
+        self._answer = self._command.pack(self._session, self._cycle.number, *codes, *values)
         self._send(_COMMAND, self._answer)
 
     def __iter__(self) -> Iterator[Cycle]:

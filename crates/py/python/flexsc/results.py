@@ -51,6 +51,7 @@ __all__ = [
     "Columns",
     "IndexBudget",
     "LoopMargins",
+    "MirrorSensitivity",
     "NoiseSpectrum",
     "OutputBound",
     "OutputNoise",
@@ -322,6 +323,9 @@ class StabilityMargins(MarginsFigure, Data):
     computed.
     """
 
+    mirrors: dict[str, LoopMargins] = at("mirrors", keyed("signal", one(LoopMargins)))
+    """Margins of the loops of fine mirrors, cut open at the means of their guidance sensors."""
+
     frequency: Values = at("singular_values", column("frequency_rad_s"))
     """Frequencies (rad/s) of the singular values, up to pi over the period, which follow the resonances.
     With several samples of the law in a period, the motion at a frequency also has its aliases.
@@ -419,6 +423,45 @@ _IMAGE_FACTORS = attributes(
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class MirrorSensitivity(Data):
+    """Sensitivity of a fine mirror: the motion of a line of sight behind it, relative to that before it,
+    without its limits.
+
+    >>> mirror = {"frequency": 1885.0, "damping": 0.6, "period": 0.005, "gain": 0.25}
+    >>> craft = flexsc.Scenario.example("wheel-run-up").with_("line_of_sight[0].mirror", mirror)
+    >>> found = craft.spectrum(speeds=[40.0]).mirrors[0]
+    >>> found.point, bool(found.sensitivity[0] < 0.1), found.peak > 1.0
+    ('bench', True, True)
+    """
+
+    line: int = at("line", plain)
+    """Index of the line of sight."""
+
+    point: str = at("point", plain)
+    """Point of the line of sight."""
+
+    spectral_radius: float = at("spectral_radius", number)
+    """Largest magnitude of a pole of the mirror's loop over its period."""
+
+    crossing_hz: float = at("crossing_hz", number)
+    """Lowest frequency (Hz) from which on the mirror enlarges the motion; none if it does at no frequency.
+    NaN if there is none.
+    """
+
+    peak: float = at("peak", number)
+    """Largest ratio of the motion behind the mirror and before it."""
+
+    peak_hz: float = at("peak_hz", number)
+    """Frequency (Hz) of the largest ratio."""
+
+    frequency_hz: Values = at("frequency_hz", array)
+    """Frequencies (Hz) up to half the rate of the loop."""
+
+    sensitivity: Values = at("sensitivity", array)
+    """Ratio of a sine behind the mirror, at its own frequency, and before it."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class NoiseSpectrum(NoiseFigure, Data):
     """Noise of some outputs of a loop.
 
@@ -461,6 +504,9 @@ class NoiseSpectrum(NoiseFigure, Data):
 
     wheels: WheelSpectrum | None = at("wheels", plain)
     """Lines of the imbalance of the wheels, if they have one. None if there is none."""
+
+    mirrors: dict[int, MirrorSensitivity] = at("mirrors", keyed("line", one(MirrorSensitivity)))
+    """Sensitivities of the fine mirrors of lines of sight, over frequency."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -87,6 +87,7 @@ __all__ = [
     "FaultKind",
     "FilterFormKind",
     "FilterKind",
+    "FineMirror",
     "Friction",
     "Gain",
     "Gate",
@@ -128,6 +129,7 @@ __all__ = [
     "Mode",
     "ModeExit",
     "ModeTarget",
+    "Mount",
     "NamedPoint",
     "Normal",
     "Notch",
@@ -464,6 +466,8 @@ class Appendage(Part):
         drive: Drive that turns it about an axis through its root during a run; default: none.
         hinge: Hinge at its root, on which it swings as a rigid body at any angle, in place of `modes`;
             default: none.
+        mount: Mount that carries it as a rigid body, in place of `modes`: an isolator of a wheel, a cooler
+            or a package of gyros; default: none.
         plate: For a thin plate in the plane of its own x and y: the axis along which it extends, from which
             first moments follow with the participations in rotation; or size and first frequency of a
             uniform panel, in place of `modes`, `centre` and `inertia`.
@@ -506,6 +510,10 @@ class Appendage(Part):
     hinge: Hinge = DEFAULT
     """Hinge at its root, on which it swings as a rigid body at any angle, in place of `modes`; default:
     none.
+    """
+    mount: Mount = DEFAULT
+    """Mount that carries it as a rigid body, in place of `modes`: an isolator of a wheel, a cooler or a
+    package of gyros; default: none.
     """
     plate: Literal["x", "y"] | UniformPlate = DEFAULT
     """For a thin plate in the plane of its own x and y: the axis along which it extends, from which first
@@ -1681,6 +1689,46 @@ class ExtendedKalman(Part):
     """
 
 
+class FineMirror(Part):
+    """Fine mirror behind a line of sight. About each of two axes across the line, its command changes at
+    the end of each period by `gain` times the mean of the error that is left, over an exposure of a
+    guidance sensor. All angles are rotations of the line of sight. The reaction torque on the body is
+    left out.
+
+    Args:
+        frequency: Natural frequency of the mirror on its drive (rad/s).
+        damping: Damping ratio of the mirror on its drive: 1 critical.
+        period: Period of its loop (s), over the whole of which the guidance sensor exposes.
+        gain: Part of the mean error of an exposure by which the command changes.
+        computing_periods: Whole periods from the end of an exposure to the change of the command that it
+            causes. Default: 1.
+        noise: Standard deviation of the noise of a mean over an exposure, about each axis (rad). Default:
+            0.0.
+        stroke: Largest command of either sign about each axis (rad); default: no limit.
+        rate: Largest change of the command about each axis in a period, over the period (rad/s); default:
+            no limit.
+    """
+
+    frequency: float
+    """Natural frequency of the mirror on its drive (rad/s)."""
+    damping: float
+    """Damping ratio of the mirror on its drive: 1 critical."""
+    period: float
+    """Period of its loop (s), over the whole of which the guidance sensor exposes."""
+    gain: float
+    """Part of the mean error of an exposure by which the command changes."""
+    computing_periods: int = DEFAULT
+    """Whole periods from the end of an exposure to the change of the command that it causes. Default: 1."""
+    noise: float = DEFAULT
+    """Standard deviation of the noise of a mean over an exposure, about each axis (rad). Default: 0.0."""
+    stroke: float = DEFAULT
+    """Largest command of either sign about each axis (rad); default: no limit."""
+    rate: float = DEFAULT
+    """Largest change of the command about each axis in a period, over the period (rad/s); default: no
+    limit.
+    """
+
+
 class Friction(Part):
     """Bearing friction: c Omega + t sgn Omega for a turning wheel, and up to the breakaway torque for a
     wheel at rest.
@@ -2011,8 +2059,8 @@ class Imbalance(Part):
         angle: Angle of the rotor at the start (rad); one number for all wheels, or one for each: with equal
             angles, wheels that turn against each other cancel in part.
         harmonics: Further harmonics of the speed, the same for all wheels.
-        point: Point of the structure at which the wheels are mounted; default: the first of the body's
-            points.
+        point: Point of the structure at which the wheels shake; default: `points` of the wheels, else the
+            first of the body's points.
         positions: Position of each wheel relative to that point (m); default: at the point.
     """
 
@@ -2035,7 +2083,9 @@ class Imbalance(Part):
     harmonics: Sequence[Harmonic] = DEFAULT
     """Further harmonics of the speed, the same for all wheels."""
     point: str = DEFAULT
-    """Point of the structure at which the wheels are mounted; default: the first of the body's points."""
+    """Point of the structure at which the wheels shake; default: `points` of the wheels, else the first of
+    the body's points.
+    """
     positions: Rows = DEFAULT
     """Position of each wheel relative to that point (m); default: at the point."""
 
@@ -2282,6 +2332,8 @@ class LineOfSight(Part):
             undeformed.
         optics: Mirrors, lenses and detectors whose motions add up to that of the line of sight, along an
             axis of the body; default: it turns with `point`.
+        mirror: Mirror that turns the image back, in a loop of its own; errors of the line of sight are then
+            those behind it.
         window: Start and end (s) of the interval in which it is assessed; default: the whole run.
         jitter_window: Length (s) of the windows within which jitter is assessed, such as an exposure time:
             the deviation from the mean over each window. Default: no jitter is assessed.
@@ -2296,6 +2348,10 @@ class LineOfSight(Part):
     optics: Sequence[OpticalElement] = DEFAULT
     """Mirrors, lenses and detectors whose motions add up to that of the line of sight, along an axis of the
     body; default: it turns with `point`.
+    """
+    mirror: FineMirror = DEFAULT
+    """Mirror that turns the image back, in a loop of its own; errors of the line of sight are then those
+    behind it.
     """
     window: Vector = DEFAULT
     """Start and end (s) of the interval in which it is assessed; default: the whole run."""
@@ -2796,6 +2852,37 @@ class ModeTarget(Part):
     slew_from: Literal["reference", "estimate"] = DEFAULT
     """Start of the slew; default: the estimated attitude after a law that does not control the attitude,
     else the reference.
+    """
+
+
+class Mount(Part):
+    """A mount that carries the appendage as a rigid body, which moves against it by small displacements and
+    rotations.
+
+    Args:
+        translation: Natural frequency of its displacement on a fixed base (rad/s), in any direction.
+        rocking: Natural frequency of its rotation about its centre of mass on a fixed base (rad/s), about
+            any axis.
+        stiffness: Stiffness at the root, in place of both: force (N) and torque (N m) along its own axes
+            per displacement (m) and rotation (rad), row by row; positive definite.
+        damping: Damping ratio of each mode on a fixed base. Default: 0.0.
+        axis: Axis in its own axes about which the mount does not give, of any length, such as that of a
+            wheel: there the rotor turns. Default: it rocks about all axes.
+    """
+
+    translation: float = DEFAULT
+    """Natural frequency of its displacement on a fixed base (rad/s), in any direction."""
+    rocking: float = DEFAULT
+    """Natural frequency of its rotation about its centre of mass on a fixed base (rad/s), about any axis."""
+    stiffness: Rows = DEFAULT
+    """Stiffness at the root, in place of both: force (N) and torque (N m) along its own axes per
+    displacement (m) and rotation (rad), row by row; positive definite.
+    """
+    damping: float = DEFAULT
+    """Damping ratio of each mode on a fixed base. Default: 0.0."""
+    axis: Vector = DEFAULT
+    """Axis in its own axes about which the mount does not give, of any length, such as that of a wheel:
+    there the rotor turns. Default: it rocks about all axes.
     """
 
 
@@ -4986,6 +5073,9 @@ class Wheels(Part):
         cant: For a pyramid: angle of each axis above the xy plane (rad); default: 0.6155 rad, which gives
             equal torques about all three axes.
         axes: Axis of each wheel in the body's axes, of any length.
+        points: Point of the structure that carries each wheel, such as one of an appendage with a `mount`:
+            one name for all wheels, or one for each. The rotor acts there, with the whole rate of the
+            point. Default: all are on the hub.
         torque: Largest torque of each motor (N m); no limit by default. If a demanded torque exceeds it,
             the whole torque is scaled down and keeps its axis.
         momentum: Largest momentum of each wheel about its axis (N m s), beyond which its motor cannot
@@ -5020,6 +5110,11 @@ class Wheels(Part):
     """
     axes: Rows = DEFAULT
     """Axis of each wheel in the body's axes, of any length."""
+    points: str | Sequence[str] = DEFAULT
+    """Point of the structure that carries each wheel, such as one of an appendage with a `mount`: one name
+    for all wheels, or one for each. The rotor acts there, with the whole rate of the point. Default: all
+    are on the hub.
+    """
     torque: float = DEFAULT
     """Largest torque of each motor (N m); no limit by default. If a demanded torque exceeds it, the whole
     torque is scaled down and keeps its axis.

@@ -1,11 +1,12 @@
 //! Worst case of a scenario over its uncertain keys.
 
+use flexsc_core::analysis::noise::{WheelOutput, Window};
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Selection;
 use flexsc_core::record::StopFlag;
 use flexsc_core::uncertain::UncertainKey;
 use flexsc_core::worst_case::{
-    MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCaseFault, WorstCaseReport,
+    LineSearch, MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCaseFault, WorstCaseReport,
 };
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
@@ -16,13 +17,14 @@ use super::{Answer, FoundScenario, Scenario, Subject, loop_break};
 use crate::aside::aside;
 use crate::error::scenario_error;
 
-/// Worst case of a quantity, with its witness. `kind` is `metric`, `requirement` or `margin`.
+/// Worst case of a quantity, with its witness. `kind` is `metric`, `requirement`, `margin` or `signal`.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Worst {
     kind: String,
     name: String,
     opened: String,
+    window: Option<f64>,
     is_least: bool,
     points: usize,
     jobs: usize,
@@ -49,7 +51,7 @@ pub struct WorstCaseOverPoints {
 impl Worst {
     pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer<WorstCaseOverPoints>> {
         let scenario = on.scenario()?;
-        let Self { kind, name, opened, is_least, points, jobs } = self;
+        let Self { kind, name, opened, window, is_least, points, jobs } = self;
         if points == 0 {
             return Err(PyValueError::new_err("points must be 1 or more, got 0"));
         }
@@ -60,6 +62,10 @@ impl Worst {
                 return Err(PyValueError::new_err(format!("margin must be one of {accepted}, got '{name}'")));
             };
             let search = MarginSearch { kind, opened: loop_break(&opened)?, most_loops: points };
+            aside(on.py, move |stop| search.run(&inner, || stop.is_requested()))?
+        } else if kind == "signal" {
+            let window = window.map(|length| Window { length, separation: None });
+            let search = LineSearch { output: WheelOutput { name, window }, most_loops: points };
             aside(on.py, move |stop| search.run(&inner, || stop.is_requested()))?
         } else {
             let quantity =

@@ -23,4 +23,22 @@ rows! {
         /// About and along x, y and z.
         axes: Vec<LineOfSightAxis>,
     }
+    /// A fine mirror about an axis of the body; angles are those by which the line of sight turns.
+    FineMirrorAxis {
+        /// Component of the rotation of the line of sight before the mirror (rad).
+        before_rad: f64,
+        /// Angle of the mirror (rad).
+        angle_rad: f64,
+        /// Command of the mirror (rad).
+        command_rad: f64,
+    }
+    /// The fine mirror of a line of sight, at a sample of the line.
+    FineMirrorSample = "/fine_mirror" at Sample {
+        /// Index of the line of sight in the scenario, from 0.
+        line: u64,
+        /// Periods of the mirror until then in which its stroke or its rate limited a command.
+        limited: u64,
+        /// About x, y and z.
+        axes: Vec<FineMirrorAxis>,
+    }
 }

@@ -16,7 +16,6 @@ mod scene_frames;
 
 use flexsc_control::estimator::{EnvelopeWindow, ObjectiveWindow};
 use flexsc_numerics::time::{Instant, Span};
-pub use lines_of_sight::LinesOfSight;
 
 use flexsc_record::{ModeEvent, Record, RecordError, Report, Sample};
 
@@ -30,6 +29,7 @@ use cycle_rows::CycleRows;
 use failures::Failures;
 use flexsc_scenario::Scenario;
 use journal_events::JournalEvents;
+use lines_of_sight::LinesOfSight;
 use manoeuvre_end::ManoeuvreEnd;
 use motion_rows::MotionRows;
 use requirement_samples::RequirementSamples;

@@ -23,8 +23,8 @@ use super::guidance::Guidance;
 use super::loads::Loads;
 use super::mode_sky::ModeSky;
 use super::motion_limits::{MotionLimits, modal_rotation};
+use super::mounted_lines::MountedLines;
 use super::plant::Plant;
-use super::recorder::LinesOfSight;
 use super::run_view::RunView;
 use flexsc_scenario::{RequirementSource, Scenario};
 
@@ -40,7 +40,7 @@ pub struct RequirementMonitors {
     /// Monitors with the indices of their requirements, and for each of their comparisons that of its quantity.
     monitors: Vec<(usize, RequirementMonitor, Vec<usize>)>,
     quantities: Vec<Observed>,
-    lines: LinesOfSight,
+    lines: MountedLines,
     sky: Arc<ModeSky>,
     /// Bounds of the motion about three axes, norm of the modal rotations of the hub (rad/(m sqrt(kg))), and the largest
     /// acceleration of a slew (rad/s²).
@@ -103,7 +103,7 @@ impl RequirementMonitors {
             all.monitors.push((index, monitor, places));
         }
         if let Some(body) = scenario.model.three_axis().filter(|_| !all.monitors.is_empty()) {
-            all.lines = LinesOfSight::new(scenario);
+            all.lines = MountedLines::new(scenario);
             all.limits = MotionLimits::new(scenario, body);
             all.hub_rotation = modal_rotation(body, body.points.first().map_or("", |point| &point.name));
             let of_modes = scenario.mode.iter().filter_map(|mode| mode.target.as_ref()?.acceleration);

@@ -185,6 +185,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         add(scenario.sensor.accelerometers().next().is_some(), "/accelerations", Full);
         add(scenario.sensor.exclusions().next().is_some(), "/blinding", Events);
         add(!scenario.line_of_sight.is_empty(), "/line_of_sight", Full);
+        add(scenario.line_of_sight.iter().any(|line| line.mirror.is_some()), "/fine_mirror", Full);
         add(scenario.actuator.magnetorquers().is_some(), "/magnetorquers", Full);
         add(scenario.study.articulation().is_some(), "/drives", Full);
         add(scenario.study.hinges() > 0, "/hinges", Full);

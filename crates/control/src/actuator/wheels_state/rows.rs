@@ -3,7 +3,9 @@
 use std::mem;
 
 use flexsc_dynamics::three_axis::RotorObservation;
+use flexsc_flight::wheel_momentum;
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::flight_types::to_vector3;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{BearingMotion, Bearings, Report, Wheel, Wheels};
 
@@ -72,11 +74,14 @@ impl Part for WheelsState {
 
 impl MomentumStorage for WheelsState {
     fn stored_momentum(&self, now: Instant) -> [f64; 3] {
-        if let Some(known) = self.known {
-            return known.into();
-        }
         let (seconds, wheels) = (self.elapsed(now), self.allocation.axes().iter().zip(&self.wheels));
         wheels.fold(Vector::zeros(), |sum, (axis, wheel)| sum + axis * wheel.momentum_at(seconds)).into()
+    }
+
+    fn known_momentum(&self, now: Instant, rate: [f64; 3], estimated: [f64; 3]) -> [f64; 3] {
+        let (axes, speeds) = (self.allocation.flight_axes(), self.wheel_speeds(now, rate));
+        let stored = wheel_momentum::stored(axes, self.inertia, &speeds, &to_vector3(&estimated.into()));
+        [stored.x, stored.y, stored.z]
     }
 
     fn commanded_torques(&self) -> Vec<f64> {

@@ -107,12 +107,12 @@ impl ElasticHistory {
         }
     }
 
-    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the last correction by measurements
-    /// that waited for it.
-    pub fn add_gyro(&mut self, now: Instant, reading: Vector) -> Option<Correction> {
+    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the corrections by measurements that waited for it,
+    /// with the indices of their sensors.
+    pub fn add_gyro(&mut self, now: Instant, reading: Vector) -> Vec<(usize, Correction)> {
         let last = &self.entries[self.entries.len() - 1];
         if now <= last.time {
-            return None;
+            return Vec::new();
         }
         // The entry's own filter is propagated in place: filters are large.
         let (from, filter) = (last.time, last.filter.clone());
@@ -120,16 +120,14 @@ impl ElasticHistory {
         if let Some(entry) = self.entries.back_mut() {
             self.between.carry(&mut entry.filter, &reading, [from, now]);
         }
-        let mut reported = None;
-        if !self.early.is_empty() {
-            let waiting = std::mem::take(&mut self.early);
-            reported = waiting.into_iter().filter_map(|fix| self.add_measurement(&fix)).last();
-        }
+        let waiting = std::mem::take(&mut self.early);
+        let results =
+            waiting.into_iter().filter_map(|fix| Some((fix.sensor, self.add_measurement(&fix)?))).collect();
         // The last older entry stays: the interval with the oldest exposure still accepted begins there.
         while self.entries.get(1).is_some_and(|second| second.time + self.reach <= now) {
             self.entries.pop_front();
         }
-        reported
+        results
     }
 
     /// Adds a measurement, delayed or not; returns `None` if it is older than the history, or waits for a gyro reading.

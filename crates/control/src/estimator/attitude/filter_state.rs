@@ -7,7 +7,7 @@ use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
 use flexsc_numerics::flight_types::to_vector3;
 use flexsc_numerics::random::Stream;
-use flexsc_numerics::time::Instant;
+use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{
     AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates, ReadingOutcome, Refusals,
     RefusedReading, Report,
@@ -90,7 +90,10 @@ impl AttitudeFilterRun {
                 self.refusals.extend(refusal(sensor, &Correction::unused(status)));
                 if !status.is_refusal() {
                     self.rate = rate.into();
-                    last = history.add_gyro(exposed, self.rate).or(last);
+                    for (sensor, result) in history.add_gyro(exposed, self.rate) {
+                        self.refusals.extend(refusal(sensor, &result));
+                        last = Some(result).filter(|result| result.status.has_corrected()).or(last);
+                    }
                     self.since = exposed;
                 }
             }
@@ -99,11 +102,7 @@ impl AttitudeFilterRun {
             self.setting.readings_of_role(readings, &|role| matches!(role, SensorRole::Corrects { .. }))
         {
             let SensorRole::Corrects { latency, noise, gain } = role else { continue };
-            let exposed = Instant::from_ticks(observation_exposure(
-                now.ticks(),
-                latency.ticks(),
-                Instant::START.ticks(),
-            ));
+            let exposed = exposure(now, *latency);
             let measured = match (reading.sight, reading.at) {
                 (Some(measurement), _) => {
                     AttitudeMeasurement::Vector(self.setting.with_reference(measurement, exposed))
@@ -148,6 +147,11 @@ impl AttitudeFilterRun {
             None => hub,
         }
     }
+}
+
+/// Returns the exposure of an observation that becomes available at an instant.
+fn exposure(at: Instant, latency: Span) -> Instant {
+    Instant::from_ticks(observation_exposure(at.ticks(), latency.ticks(), Instant::START.ticks()))
 }
 
 /// Returns the log row of a reading with this result that was refused, or accepted after refusals; `None` of other readings.
@@ -340,6 +344,13 @@ impl Estimator for AttitudeFilterRun {
             .iter_mut()
             .zip(angles)
             .for_each(|(state_estimate, angle)| state_estimate.angle = angle);
+    }
+
+    fn with_reference(&self, sensor: usize, measured: VectorMeasurement, at: Instant) -> VectorMeasurement {
+        let Some(SensorRole::Corrects { latency, .. }) = self.setting.roles.get(sensor) else {
+            return measured;
+        };
+        self.setting.with_reference(measured, exposure(at, *latency))
     }
 
     fn filter_health(&self, now: Instant) -> Option<FilterHealth> {

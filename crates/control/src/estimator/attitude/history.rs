@@ -38,6 +38,25 @@ impl RigidHistory {
         &self.entries[self.counts.latest()]
     }
 
+    /// Adds a gyro reading (rad/s), as [`AttitudeHistory::add_gyro`] does, and returns the results of the measurements that waited for
+    /// it.
+    fn add_gyro(&mut self, now: Instant, reading: Vector) -> Vec<(usize, Correction)> {
+        self.grow();
+        let Self { counts, entries, observations } = self;
+        let (now, mut results, mut early) = (now.ticks(), Vec::new(), 0);
+        if counts.add_interval(now, to_vector3(&reading), entries, observations) {
+            while early < counts.waiting {
+                let sensor = observations[counts.applied + early].sensor;
+                match with_result(counts.apply_waiting(early, now, entries, observations)) {
+                    Some(result) => results.push((sensor, result)),
+                    None => early += 1,
+                }
+            }
+            counts.forget(now, entries);
+        }
+        results
+    }
+
     /// Lets the storage grow before a call, which then never finds it full, and rarely moves entries within it.
     fn grow(&mut self) {
         let Self { counts, entries, observations } = self;
@@ -154,15 +173,11 @@ impl FilterHistory {
         }
     }
 
-    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the last correction by measurements
-    /// that waited for it.
-    pub fn add_gyro(&mut self, now: Instant, reading: Vector) -> Option<Correction> {
+    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the results of the measurements that waited for it,
+    /// with the indices of their sensors.
+    pub fn add_gyro(&mut self, now: Instant, reading: Vector) -> Vec<(usize, Correction)> {
         match self {
-            Self::Rigid(history) => {
-                history.grow();
-                let RigidHistory { counts, entries, observations } = history;
-                with_result(counts.add_gyro(now.ticks(), to_vector3(&reading), entries, observations))
-            }
+            Self::Rigid(history) => history.add_gyro(now, reading),
             Self::Elastic(history) => history.add_gyro(now, reading),
         }
     }

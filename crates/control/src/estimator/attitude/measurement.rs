@@ -46,7 +46,8 @@ impl DelayedMeasurement {
                 observation.inertial = to_vector3(&measurement.inertial);
             }
         }
-        DelayedObservation { exposed: self.exposed.ticks(), observation, ..DelayedObservation::NONE }
+        let (sensor, exposed) = (self.sensor, self.exposed.ticks());
+        DelayedObservation { sensor, exposed, observation, ..DelayedObservation::NONE }
     }
 }
 

@@ -3,7 +3,7 @@
 use flexsc_flight::attitude_gate::AttitudeGate;
 use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_flight::ticks::Ticks;
-use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::time::{Instant, Span};
 use nalgebra::{Matrix3, Quaternion};
 
@@ -107,8 +107,17 @@ fn a_measurement_waits_for_its_reading_and_not_for_ever() {
     let mut history = FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(0.5), GATE);
     assert!(history.add_measurement(&fix(&read, 4)).is_none());
     for k in 1..12 {
-        assert_eq!(history.add_gyro(at(k), reading(k)).is_some(), k == 4);
+        assert_eq!(!history.add_gyro(at(k), reading(k)).is_empty(), k == 4);
     }
+    // One that is refused when its reading comes is reported too, with its sensor.
+    let mut wrong = DelayedMeasurement { sensor: 3, ..fix(&read, 12) };
+    if let AttitudeMeasurement::Attitude(attitude) = &mut wrong.measured {
+        *attitude *= rotation(&Vector::new(2.1, 0.0, 0.0));
+    }
+    assert!(history.add_measurement(&wrong).is_none());
+    let results = history.add_gyro(at(12), reading(12));
+    let results: Vec<_> = results.iter().map(|(sensor, result)| (*sensor, result.status)).collect();
+    assert_eq!(results, [(3, ReadingStatus::Improbable)]);
     let late = history.add_measurement(&fix(&read, 8)).expect("a result");
     assert_eq!(late.status, ReadingStatus::Untimely, "0.75 s late");
 }

@@ -4,6 +4,9 @@
 //! A rotor of inertia I turns relative to the body at the speed Omega = h/I - a.w; its angle psi has the rate Omega. While the
 //! rotor slips, the bearing subtracts the friction c Omega + t_c sgn Omega (viscous, Coulomb) from the motor torque. A stuck
 //! rotor turns with the body, h = I a.w, and adds I a a' to the body's inertia.
+//!
+//! A rotor on a part that the modes turn by rho q against the hub exerts the torque h a x (w + rho q') there: on the hub h a x rho q' besides
+//! the change of the stored momentum, and the forces rho' (h a x (w + rho q')) on the modes besides those of the hub's torque.
 
 use flexsc_numerics::attitude::Vector;
 use nalgebra::Matrix3;
@@ -23,6 +26,8 @@ pub struct Bearing {
     pub breakaway: f64,
     /// Harmonics of the imbalance.
     pub lines: Vec<HarmonicLine>,
+    /// Rotation rho of the rotor against the hub per unit of each mode (rad/(m sqrt(kg))); empty for one on the hub.
+    pub tilts: Vec<Vector>,
 }
 
 /// Harmonic of the imbalance: the load on the body is Omega² (c cos k psi + s sin k psi), where k is the order and psi the
@@ -89,6 +94,11 @@ impl Bearing {
         self.breakaway > 0.0
     }
 
+    /// Returns the largest rate at which whirl moves the modes for a momentum of the rotor (rad/s).
+    pub fn whirl_rate(&self, momentum: f64) -> f64 {
+        momentum.abs() * self.tilts.iter().map(Vector::norm_squared).sum::<f64>()
+    }
+
     /// Returns the highest order of the imbalance; 0 without imbalance.
     pub fn highest_order(&self) -> f64 {
         self.lines.iter().map(|line| line.order).fold(0.0, f64::max)
@@ -123,6 +133,10 @@ pub struct RotorStage {
     pub node_rates: Vec<[Vector; 3]>,
     /// Imbalance terms Omega² cos k psi and Omega² sin k psi of each harmonic of each rotor (rad²/s²).
     pub imbalance_terms: Vec<[f64; 2]>,
+    /// Rates of the modes at the current stage (m sqrt(kg)/s), for rotors that tilt.
+    pub modal_rates: Vec<f64>,
+    /// Torque h a x (w + rho q') of each rotor that tilts, 0 of others (N m).
+    pub whirl: Vec<Vector>,
 }
 
 impl RotorStage {
@@ -170,11 +184,26 @@ impl BearingLoads<'_> {
         momentum / self.bearings[index].inertia - self.rotors[index].axis.dot(rate)
     }
 
-    /// Updates the rates of all rotors from `stage.at`, and the imbalance terms, for a body with the angular rate
-    /// `rate` (rad/s); returns the torque of the imbalance on the hub (N m).
+    /// Updates the rates of all rotors from `stage.at`, the imbalance terms and the whirl, for a body with the angular rate
+    /// `rate` (rad/s); returns the torque of imbalance and whirl on the hub (N m).
     pub fn update_rates(&self, rate: &Vector, stage: &mut RotorStage) -> Vector {
         let mut torque = Vector::zeros();
         stage.imbalance_terms.clear();
+        stage.whirl.clear();
+        if self.has_tilts() {
+            for (index, (bearing, rotor)) in self.bearings.iter().zip(self.rotors).enumerate() {
+                let momentum = rotor.axis * stage.at[index].x;
+                let modes = bearing.tilts.iter().zip(&stage.modal_rates);
+                let tilting = modes.fold(Vector::zeros(), |sum, (tilt, modal_rate)| sum + tilt * *modal_rate);
+                torque += momentum.cross(&tilting);
+                let is_carried = !bearing.tilts.is_empty();
+                stage.whirl.push(if is_carried {
+                    momentum.cross(&(rate + tilting))
+                } else {
+                    Vector::zeros()
+                });
+            }
+        }
         for (index, (bearing, rotor)) in self.bearings.iter().zip(self.rotors).enumerate() {
             let (at, slip) = (stage.at[index], self.slips[index]);
             let stuck = slip == SlipDirection::Stuck;
@@ -195,13 +224,19 @@ impl BearingLoads<'_> {
         torque
     }
 
-    /// Returns the force of the imbalance on a mode (N/sqrt(kg)).
-    pub fn force(&self, mode: usize, imbalance_terms: &[[f64; 2]]) -> f64 {
+    /// Returns the force of imbalance and whirl on a mode (N/sqrt(kg)).
+    pub fn force(&self, mode: usize, stage: &RotorStage) -> f64 {
         let lines = self.bearings.iter().flat_map(|bearing| &bearing.lines);
-        lines
-            .zip(imbalance_terms)
+        let force = lines
+            .zip(&stage.imbalance_terms)
             .map(|(line, [c, s])| line.forces[0][mode] * c + line.forces[1][mode] * s)
-            .sum()
+            .sum();
+        let carried = self
+            .bearings
+            .iter()
+            .zip(&stage.whirl)
+            .filter_map(|(of, torque)| Some((of.tilts.get(mode)?, torque)));
+        carried.fold(force, |force, (tilt, torque)| force + tilt.dot(torque))
     }
 
     /// Returns the force of the imbalance on the body (N).
@@ -212,8 +247,13 @@ impl BearingLoads<'_> {
             .fold(Vector::zeros(), |sum, (line, [c, s])| sum + line.force[0] * *c + line.force[1] * *s)
     }
 
-    /// Returns true if any rotor has imbalance.
-    pub fn has_imbalance(&self) -> bool {
-        self.bearings.iter().any(|bearing| !bearing.lines.is_empty())
+    /// Returns true if any rotor exerts forces on the modes.
+    pub fn has_forces(&self) -> bool {
+        self.has_tilts() || self.bearings.iter().any(|bearing| !bearing.lines.is_empty())
+    }
+
+    /// Returns true if the modes turn any rotor against the hub.
+    pub fn has_tilts(&self) -> bool {
+        self.bearings.iter().any(|bearing| !bearing.tilts.is_empty())
     }
 }

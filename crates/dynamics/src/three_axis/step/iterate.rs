@@ -14,6 +14,7 @@ use super::predictor::times;
 use super::stage_values::NodeValues;
 use super::{IntegrationStep, MAX_ITERATIONS, ModeMemory};
 use crate::three_axis::constants::{centrifugal_terms, tensor};
+use crate::three_axis::rotors::RotorStage;
 use crate::three_axis::small_rotation::SmallRotationLanes;
 use crate::three_axis::state::IntegratorState;
 use crate::three_axis::surroundings::SkyAt;
@@ -328,7 +329,7 @@ impl IntegrationStep<'_> {
                     NODES[node] * self.h,
                     tides[node].as_ref(),
                     modes,
-                    &[],
+                    &RotorStage::default(),
                 );
                 let memory = &mut modes[index];
                 change = change.max((force - memory.s[node]).abs());

@@ -111,6 +111,7 @@ impl IntegrationStep<'_> {
         change: &mut IterationChange,
     ) -> StageValues {
         let deformation = self.deformation(node, modes, optional);
+        self.store_canonical_rates(modes, node, optional);
         let [a, b, c] = weights(&MATRIX[node], self.h);
         let momentum = state.mean_momentum
             + stages[0].momentum_rate * a
@@ -225,6 +226,12 @@ impl IntegrationStep<'_> {
             };
         }
         if let Some(bearings) = &self.bearings {
+            if bearings.has_tilts() {
+                // Rates q' = P + phi' Gt.
+                for (modal_rate, of) in optional.rotors.modal_rates.iter_mut().zip(&model.modes) {
+                    *modal_rate += of.rotation.dot(&rigid_momentum);
+                }
+            }
             torque += bearings.update_rates(&rate, &mut optional.rotors);
         }
         let mean_rate =

@@ -222,6 +222,7 @@ impl IntegrationStep<'_> {
             at.extend(state.rotor_states.iter().map(|rotor| rotor.values));
             rates.resize(at.len(), Vector::zeros());
         }
+        self.store_canonical_rates(modes, 0, optional);
         let (stage, forcing) =
             self.stage_motion((0, 0.0), &deformation, &state.mean_momentum, &state.mean_attitude, optional);
         if self.bearings.is_some() {
@@ -322,6 +323,19 @@ impl IntegrationStep<'_> {
             self.gimbal_momentum.as_ref().map_or(0.0, |gimbal_momentum| length(&gimbal_momentum.start.0));
         let rotors = length(&self.rotors.0) + gimbal_momentum;
         length(&state.mean_momentum) + self.h * length(&self.torque) + ROTORS * rotors
+    }
+
+    /// Stores the canonical rates P of all modes at a node, if they turn rotors against the hub.
+    pub(super) fn store_canonical_rates(
+        &self,
+        modes: &[ModeMemory],
+        node: usize,
+        optional: &mut OptionalStages,
+    ) {
+        if self.bearings.is_some_and(|bearings| bearings.has_tilts()) {
+            optional.rotors.modal_rates.clear();
+            optional.rotors.modal_rates.extend(modes.iter().map(|memory| memory.rate[node]));
+        }
     }
 
     /// Stores q and P of a mode for the terms of articulated appendages.

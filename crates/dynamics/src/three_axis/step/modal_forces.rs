@@ -8,6 +8,7 @@ use super::stage_values::ModalForcing;
 use super::{IntegrationStep, ModeMemory, OptionalStages};
 use crate::three_axis::appendages::StageForces;
 use crate::three_axis::constants::{ModeGroup4, centrifugal_terms};
+use crate::three_axis::rotors::RotorStage;
 
 impl IntegrationStep<'_> {
     /// Returns true if modal forces depend on more than Gt and constants (change of inertia, drives, damping
@@ -17,7 +18,7 @@ impl IntegrationStep<'_> {
             || self.appendages.is_some()
             || self.model.coupled_damping.is_some()
             || self.surroundings.is_some_and(|(surroundings, _)| !surroundings.thermal_forces().is_empty())
-            || self.bearings.is_some_and(|bearings| bearings.has_imbalance())
+            || self.bearings.is_some_and(|bearings| bearings.has_forces())
     }
 
     /// Returns true if the modes are forced by Gt, constants and centrifugal terms only, so that the SIMD path
@@ -76,7 +77,7 @@ impl IntegrationStep<'_> {
                     forcing.t,
                     forcing.tide.as_ref(),
                     modes,
-                    &optional.rotors.imbalance_terms,
+                    &optional.rotors,
                 );
             }
             let memory = &mut modes[index];
@@ -86,7 +87,7 @@ impl IntegrationStep<'_> {
         change
     }
 
-    /// Returns the force on a mode by tides, rotor imbalance, damping coupling and heating (N/sqrt(kg)). For bodies
+    /// Returns the force on a mode by tides, rotor imbalance and whirl, damping coupling and heating (N/sqrt(kg)). For bodies
     /// with drives, tides and heating are computed with the appendages instead.
     pub(super) fn additional_force(
         &self,
@@ -94,14 +95,15 @@ impl IntegrationStep<'_> {
         t: f64,
         tide: Option<&Matrix3<f64>>,
         modes: &[ModeMemory],
-        imbalance_terms: &[[f64; 2]],
+        rotors: &RotorStage,
     ) -> f64 {
         let mut force = 0.0;
         if let (Some(tide), None) = (tide, self.appendages) {
             force += self.model.modes[index].tidal_force(tide);
         }
-        if let Some(bearings) = self.bearings.filter(|_| !imbalance_terms.is_empty()) {
-            force += bearings.force(index, imbalance_terms);
+        let is_forced = !(rotors.imbalance_terms.is_empty() && rotors.whirl.is_empty());
+        if let Some(bearings) = self.bearings.filter(|_| is_forced) {
+            force += bearings.force(index, rotors);
         }
         if let Some(damping) = &self.model.coupled_damping {
             let modal = modes.iter().enumerate();

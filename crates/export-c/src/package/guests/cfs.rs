@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use sha2::{Digest, Sha256};
+
 use super::payload::Payload;
 use super::{camel, named};
 use crate::control_system::{CallLayout, Channel, NumberKind};
@@ -18,7 +20,7 @@ const FIRST_TOPIC: usize = 0x90;
 /// Returns the files of the app, of its stubs and their Makefile.
 pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageFile> {
     let (prefix, app) = (plan.prefix, format!("cfs/{}_app", plan.prefix));
-    let pipe: String = prefix.to_uppercase().chars().take(LONGEST_PIPE - "_PIPE".len()).collect();
+    let pipe = shortened(prefix, LONGEST_PIPE - "_PIPE".len()).to_uppercase();
     let of_config = |name: &str| format!("{app}/config/default_{prefix}_app_{name}.h");
     let file = |path: String, template: &str| text(path, named(template, plan));
     let table_name = table_name(plan);
@@ -75,8 +77,18 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
 
 /// Returns the name of the table's source without its extension; the build of cFS requires that the file of the table has it too.
 fn table_name(plan: &Plan<'_>) -> String {
-    let prefix: String = plan.prefix.chars().take(LONGEST_FILE - "_tbl.tbl".len()).collect();
-    format!("{prefix}_tbl")
+    format!("{}_tbl", shortened(plan.prefix, LONGEST_FILE - "_tbl.tbl".len()))
+}
+
+/// Returns a name of at most this length; a longer one keeps its start, and ends with four digits by which names with that start
+/// differ.
+fn shortened(name: &str, longest: usize) -> String {
+    if name.len() <= longest {
+        return name.to_owned();
+    }
+    let hash = Sha256::digest(name);
+    let start: String = name.chars().take(longest - 4).collect();
+    format!("{start}{:02x}{:02x}", hash[0], hash[1])
 }
 
 /// Returns the table of parameters, with the defaults.
@@ -396,4 +408,16 @@ fn replay(plan: &Plan<'_>) -> String {
         8 * (most.max(most_input) + 8) + 64
     );
     include_str!("../files/cfs/replay.c").replace("TABLES", &tables)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shortened;
+
+    #[test]
+    fn names_with_equal_starts_stay_different() {
+        assert_eq!(shortened("observer", 11), "observer");
+        let [one, other] = ["earth_observer_day", "earth_observer_night"].map(|name| shortened(name, 11));
+        assert!(one != other && one.starts_with("earth_o") && one.len() == 11, "{one} {other}");
+    }
 }

@@ -107,7 +107,9 @@ pub(super) fn replay(plan: &Plan<'_>) -> String {
             camel(name)
         );
     }
-    let tested = plan.parameters.first().map_or_else(String::new, |own| {
+    // A parameter of 0 has limits of its own.
+    let other_than_zero = plan.parameters.iter().find(|own| own.value != 0.0);
+    let tested = other_than_zero.map_or_else(String::new, |own| {
         let set = |factor: f64| {
             let (name, value) = (own.name.to_uppercase(), factor * own.value);
             format!("    component.call_parameterUpdated(\"{name}\", {value:?});\n")

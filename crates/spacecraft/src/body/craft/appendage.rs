@@ -16,8 +16,9 @@ use super::clamped::{ClampedMode, antisymmetric_part};
 use super::craig_bampton::CraigBampton;
 use super::drive::AppendageDrive;
 use super::fe_units::FileUnits;
-use super::hinge::{Hinge, HingedBody};
+use super::hinge::{Hinge, RigidBody};
 use super::mass::MassProperties;
+use super::mount::Mount;
 use super::plate::{Plate, PlateAxis, UniformPlate};
 use super::thermal::Thermal;
 use crate::body::DampingRatios;
@@ -49,6 +50,9 @@ pub struct Appendage {
     /// Hinge at its root, on which it swings as a rigid body at any angle, in place of `modes`; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hinge: Option<Hinge>,
+    /// Mount that carries it as a rigid body, in place of `modes`: an isolator of a wheel, a cooler or a package of gyros; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mount: Option<Mount>,
     /// For a thin plate in the plane of its own x and y: the axis along which it extends, from which first moments follow
     /// with the participations in rotation; or size and first frequency of a uniform panel, in place of `modes`, `centre`
     /// and `inertia`.
@@ -117,19 +121,22 @@ impl Appendage {
         self.drive.as_ref().map_or(orientation, |drive| orientation * drive.rotation(angle))
     }
 
-    /// Returns the clamped modes: those of the table, or the single mode of the hinge or of a uniform panel; without
+    /// Returns the clamped modes: those of the table or of the mount, or the single mode of the hinge or of a uniform panel; without
     /// [`Spacecraft::frequency_factor`](super::Spacecraft::frequency_factor).
     pub fn clamped_modes(&self) -> Cow<'_, [ClampedMode]> {
         if let Some(plate) = self.uniform_plate() {
             return Cow::Owned(vec![plate.mode(self.mass.get(), &self.points)]);
         }
-        let hinged = self.hinge.as_ref().and_then(|hinge| hinge.mode(&self.hinged_body()));
+        if let Some(mount) = &self.mount {
+            return mount.modes(&self.rigid_body()).map_or(Cow::Borrowed(&[]), Cow::Owned);
+        }
+        let hinged = self.hinge.as_ref().and_then(|hinge| hinge.mode(&self.rigid_body()));
         hinged.map_or(Cow::Borrowed(&self.modes), |mode| Cow::Owned(vec![mode]))
     }
 
-    /// Returns the appendage as a rigid body on its hinge.
-    fn hinged_body(&self) -> HingedBody<'_> {
-        HingedBody {
+    /// Returns the appendage as a rigid body on its hinge or its mount.
+    fn rigid_body(&self) -> RigidBody<'_> {
+        RigidBody {
             mass: self.mass.get(),
             centre: vector(&self.centre),
             inertia: tensor(&self.inertia),
@@ -153,7 +160,26 @@ impl Appendage {
             let why = "must be left out: an appendage with a `hinge` is rigid, and swings on the hinge alone";
             return Err(ConfigError::new(key, why));
         }
-        hinge.check(&self.hinged_body()).map_err(|fault| fault.within("hinge"))
+        hinge.check(&self.rigid_body()).map_err(|fault| fault.within("hinge"))
+    }
+
+    /// Checks the mount, and that no key is given that is inconsistent with one.
+    ///
+    /// # Errors
+    /// The faulty key, and the reason.
+    pub(super) fn check_mount(&self) -> Result<(), ConfigError> {
+        let Some(mount) = &self.mount else { return Ok(()) };
+        let others = [
+            ("hinge", self.hinge.is_some()),
+            ("modes", self.modes.file().is_some() || !self.modes.is_empty()),
+            ("plate", self.plate.is_some()),
+            ("thermal", self.thermal.is_some()),
+        ];
+        if let Some((key, _)) = others.into_iter().find(|(_, is_given)| *is_given) {
+            let why = "must be left out: an appendage with a `mount` is rigid, and moves on the mount alone";
+            return Err(ConfigError::new(key, why));
+        }
+        mount.check(&self.rigid_body()).map_err(|fault| fault.within("mount"))
     }
 
     /// Checks that no key is given that follows from the size and the frequency of a uniform panel, and that its points
@@ -195,7 +221,7 @@ impl Appendage {
             inertia: self.inertia_tensor(),
             modes: self.clamped_modes().iter().map(mode).collect(),
             drive: self.drive.as_ref().map(|drive| (drive.axis(), drives)),
-            hinge: self.hinge.as_ref().map(|hinge| hinge.for_integrator(&self.hinged_body())),
+            hinge: self.hinge.as_ref().map(|hinge| hinge.for_integrator(&self.rigid_body())),
         }
     }
 

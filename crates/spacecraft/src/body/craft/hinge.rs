@@ -38,8 +38,8 @@ const MOST_ANGLE: f64 = 3.2;
 /// Smallest moment of inertia about the hinge, relative to the appendage's inertia about the root.
 const LEAST: f64 = 1e-9;
 
-/// Rigid body that swings on a hinge, in the axes of the appendage.
-pub(super) struct HingedBody<'a> {
+/// Appendage as a rigid body, in its own axes.
+pub(super) struct RigidBody<'a> {
     /// Mass (kg).
     pub mass: f64,
     /// Centre of mass from the root (m).
@@ -57,20 +57,19 @@ impl Hinge {
     }
 
     /// Returns the hinge in the integrator's form.
-    pub(super) fn for_integrator(&self, body: &HingedBody<'_>) -> three_axis::HingeGeometry {
+    pub(super) fn for_integrator(&self, body: &RigidBody<'_>) -> three_axis::HingeGeometry {
         three_axis::HingeGeometry { about: self.axis(), inertia: body.inertia_about(&self.axis()) }
     }
 
     /// Returns the mode of the hinge, in which the appendage turns as a whole, by 1/sqrt(I) per unit; `None` if its
     /// frequency is out of range.
-    pub(super) fn mode(&self, body: &HingedBody<'_>) -> Option<ClampedMode> {
-        let (axis, centre, own) = (self.axis(), body.centre, &body.inertia);
+    pub(super) fn mode(&self, body: &RigidBody<'_>) -> Option<ClampedMode> {
+        let (axis, centre) = (self.axis(), body.centre);
         let inertia = body.inertia_about(&axis);
         let unit = f64::sqrt(inertia);
         let frequency = f64::sqrt(self.stiffness.get() / inertia);
         // Integral of r r' dm. That of r (a x r)' is its product with [a]'.
-        let second = 0.5 * own.trace() * Matrix3::identity() - own + body.mass * centre * centre.transpose();
-        let moments = second * axis.cross_matrix().transpose() / unit;
+        let moments = body.second_moment() * axis.cross_matrix().transpose() / unit;
         let three = |v: Vector| [v.x, v.y, v.z].map(|component| Finite::new(component).unwrap_or_default());
         let shape = |position: &[Finite; 3]| Shape {
             translation: three(axis.cross(&vector(position)) / unit),
@@ -93,7 +92,7 @@ impl Hinge {
     ///
     /// # Errors
     /// A key within the hinge, and the reason.
-    pub(super) fn check(&self, body: &HingedBody<'_>) -> Result<(), ConfigError> {
+    pub(super) fn check(&self, body: &RigidBody<'_>) -> Result<(), ConfigError> {
         let length = vector(&self.about).norm();
         if !(1e-6..=1e6).contains(&length) {
             return Err(ConfigError::new(
@@ -128,7 +127,7 @@ impl Hinge {
     }
 }
 
-impl HingedBody<'_> {
+impl RigidBody<'_> {
     /// Returns the moment of inertia about an axis through the root (kg m²).
     fn inertia_about(&self, axis: &Vector) -> f64 {
         axis.dot(&(self.inertia * axis)) + self.mass * axis.cross(&self.centre).norm_squared()

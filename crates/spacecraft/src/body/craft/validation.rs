@@ -99,6 +99,7 @@ fn appendage_itself(appendage: &Appendage) -> Result<(), ConfigError> {
         drive.validate().map_err(|fault| fault.within("drive"))?;
     }
     appendage.check_hinge()?;
+    appendage.check_mount()?;
     appendage.check_plate()?;
     for (index, point) in appendage.points.iter().enumerate() {
         looks_like_metres(&format!("points[{index}].position"), vector(&point.position).norm())?;

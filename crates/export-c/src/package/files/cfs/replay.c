@@ -166,12 +166,19 @@ static LOWER_parameters changed;
 static void load_tables(void)
 {
     double *numbers = (double *)&changed;
+    const size_t count = sizeof changed / sizeof *numbers;
+    size_t first = 0;
     changed = LOWER_default_parameters;
-    numbers[0] *= 100.0;
+    /* a parameter of 0 stays 0 when it is multiplied */
+    while (first + 1 < count && numbers[first] == 0.0) {
+        ++first;
+    }
+    const double number = numbers[first];
+    numbers[first] = number == 0.0 ? 100.0 : 100.0 * number;
     if (CFE_TBL_Load(UPPER_APP_Data.Table, CFE_TBL_SRC_ADDRESS, &changed) == CFE_SUCCESS) {
         fail("a table beyond the limits was taken");
     }
-    numbers[0] = 1.5 * (numbers[0] / 100.0);
+    numbers[first] = number == 0.0 ? 0.5 : 1.5 * number;
     if (CFE_TBL_Load(UPPER_APP_Data.Table, CFE_TBL_SRC_ADDRESS, &changed) != CFE_SUCCESS) {
         fail("a table was refused");
     }

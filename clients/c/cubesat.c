@@ -1,0 +1,178 @@
+/* The exported control system of scenarios/cubesat-day.toml as the flight software of a run in lockstep:
+ *
+ *     flexsc export-c scenarios/cubesat-day.toml -o flight --name sat
+ *     make -C clients/c cubesat FLIGHT=../../flight
+ *     flexsc serve scenarios/cubesat-day.toml --period 0.5
+ *     clients/c/cubesat 127.0.0.1 5010 udp 30000
+ *
+ * Attitude filter, modes and laws are those of the export. Moments of B-dot and torques go to the actuators of the server, where the
+ * scenario's law unloads the wheels; targets are those of the server's modes. Arguments: host, port, transport, and the time at which
+ * the computer fails for 10 s. Then it begins with nothing but the mode, which it has kept, and the readings. */
+#include "flexsc_lockstep.h"
+#include "sat.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Time without the computer (s). */
+#define OUTAGE 10
+
+/* Mode in which the B-dot law commands the magnetorquers. */
+#define DETUMBLE 0
+
+static flexsc_client client;
+static sat_state state;
+/* Times of the next test of the conditions, of the next decision and of the last reading of the star tracker. */
+static sat_ticks next_test, next_step, last_tracker;
+static int64_t mode;
+
+static bool is_before(sat_ticks a, sat_ticks b)
+{
+    return a.whole < b.whole || (a.whole == b.whole && a.part < b.part);
+}
+
+/* Reads the numbers of a field. */
+static void read_numbers(const char *name, double *numbers, int count)
+{
+    const int field = flexsc_find(&client, name);
+    for (int index = 0; index < count; index++) {
+        numbers[index] = flexsc_number(&client, field, index);
+    }
+}
+
+static bool is_new(const char *name)
+{
+    return flexsc_integer(&client, flexsc_find(&client, name), 0) == FLEXSC_NEW;
+}
+
+/* Begins, at the start of the run or after the computer has failed. */
+static void begin(sat_ticks now)
+{
+    sat_start_input start = sat_run_start;
+    sat_start_output started;
+    memset(&state, 0x5a, sizeof state);
+    sat_init(&state, now);
+    if (client.cycle > 0) {
+        memset(&start, 0, sizeof start);
+        read_numbers("star_tracker.attitude", start.attitude, 4);
+    }
+    sat_start(&state, now, &start, &started);
+    if (client.cycle > 0) {
+        const sat_enter_input input = {.mode = mode};
+        sat_enter_output entered;
+        sat_enter(&state, now, &input, &entered);
+    }
+    next_test = now;
+    next_step = now;
+}
+
+/* Gives the filter and the B-dot law the readings that have come since the last cycle. */
+static void sample(sat_ticks now)
+{
+    sat_sample_input input = {.gyro_is_valid = is_new("gyro.status"),
+                              .magnetometer_is_valid = is_new("magnetometer.status"),
+                              .sun_sensor_is_valid = is_new("sun_sensor.status"),
+                              .star_tracker_is_valid = is_new("star_tracker.status")};
+    sat_sample_output output;
+    if (input.star_tracker_is_valid) {
+        last_tracker = now;
+    }
+    read_numbers("gyro.rate", input.gyro_rate, 3);
+    read_numbers("magnetometer.field", input.magnetometer_vector, 3);
+    read_numbers("magnetometer.reference", input.magnetometer_reference, 3);
+    read_numbers("sun_sensor.direction", input.sun_sensor_vector, 3);
+    read_numbers("sun_sensor.reference", input.sun_sensor_reference, 3);
+    read_numbers("star_tracker.attitude", input.star_tracker_attitude, 4);
+    sat_sample(&state, now, &input, &output);
+    if (input.magnetometer_is_valid) {
+        sat_field_input field;
+        sat_field_output rate;
+        memcpy(field.field, input.magnetometer_vector, sizeof field.field);
+        sat_field(&state, now, &field, &rate);
+    }
+}
+
+/* Tests the conditions of the mode. */
+static void supervise(sat_ticks now)
+{
+    sat_supervise_input input;
+    sat_supervise_output output;
+    read_numbers("reference.attitude", input.target_attitude, 4);
+    input.silent_star_tracker = (double)(now.whole - last_tracker.whole) + (double)(now.part - last_tracker.part) * 1e-15;
+    sat_supervise(&state, now, &input, &output);
+    if (output.has_changed) {
+        printf("mode %d at %lld s\n", (int)output.mode, (long long)now.whole);
+        next_step = now;
+    }
+    mode = output.mode;
+    next_test.whole = output.has_next ? output.next_whole : INT64_MAX;
+    next_test.part = output.next_part;
+}
+
+/* Decides, and sends the moments or the torques. */
+static int step(sat_ticks now)
+{
+    sat_step_input input;
+    sat_step_output output;
+    read_numbers("reference.attitude", input.target_attitude, 4);
+    read_numbers("reference.angle", input.reference_angle, 3);
+    read_numbers("reference.rate", input.reference_rate, 3);
+    read_numbers("reference.acceleration", input.reference_acceleration, 3);
+    read_numbers("wheels.speed", input.wheel_speed, 3);
+    sat_step(&state, now, &input, &output);
+    next_step = now;
+    if (output.mode == DETUMBLE) {
+        next_step.whole += 1;
+        return flexsc_command(&client, output.moment, FLEXSC_MOMENT);
+    }
+    next_step.part += INT64_C(500000000000000);
+    if (next_step.part >= INT64_C(1000000000000000)) {
+        next_step.part -= INT64_C(1000000000000000);
+        next_step.whole += 1;
+    }
+    return flexsc_command(&client, output.torque, FLEXSC_TORQUE);
+}
+
+int main(int count, char **arguments)
+{
+    const char *host = count > 1 ? arguments[1] : "127.0.0.1";
+    const uint16_t port = (uint16_t)(count > 2 ? strtoul(arguments[2], NULL, 10) : 5010);
+    const int transport = count > 3 && strcmp(arguments[3], "tcp") == 0 ? FLEXSC_TCP : FLEXSC_UDP;
+    const int64_t failure = count > 4 ? strtoll(arguments[4], NULL, 10) : INT64_MAX - OUTAGE;
+    if (flexsc_connect(&client, transport, host, port, 0) != 0) {
+        fprintf(stderr, "error: %s\n", client.error);
+        return 1;
+    }
+    bool is_up = false;
+    int status;
+    while ((status = flexsc_receive(&client)) == 1) {
+        const sat_ticks now = {.whole = client.time_s, .part = client.time_fs};
+        const bool has_failed = now.whole >= failure && now.whole < failure + OUTAGE;
+        if (!is_up && !has_failed) {
+            begin(now);
+        }
+        is_up = !has_failed;
+        int sent;
+        if (is_up) {
+            sample(now);
+            if (!is_before(now, next_test)) {
+                supervise(now);
+            }
+            sent = is_before(now, next_step) ? flexsc_hold(&client) : step(now);
+        } else {
+            sent = flexsc_hold(&client);
+        }
+        if (sent != 0) {
+            status = -1;
+            break;
+        }
+    }
+    if (status < 0) {
+        fprintf(stderr, "error: %s\n", client.error);
+    } else {
+        printf("%llu cycles, %s\n", (unsigned long long)client.cycle + 1, client.end == FLEXSC_COMPLETE ? "complete" : "not complete");
+    }
+    flexsc_close(&client);
+    return status < 0 || client.end == FLEXSC_FAILED;
+}

@@ -1,0 +1,224 @@
+//! Solutions for the lines of a loop: exact, by solves with the body and with the loop over a period.
+//!
+//! The body moves as p exp(j w t) under the load alone, p = (j w - A)^-1 load. What the law does about it is found by going through a
+//! period from p, and z = exp(j w P) times the states at its start are those at its end: (z - a) d = F - z p with the states p + d at
+//! the start and F at the end of that period. The torques repeat but for z, so that each of their lines U at w_n moves the body by
+//! (j w_n - A)^-1 B U.
+
+use std::f64::consts::{PI, TAU};
+
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::reader_units::number;
+use nalgebra::{Complex, DMatrix};
+
+use super::mirror_states::MirrorOutput;
+use super::motion::OutputRow;
+use super::period_rows::{ForcedMotion, PeriodRows, Piece, joined};
+use super::spectral_line::{OutputLines, SineLoad, SpectralLine};
+use crate::margins::frequency_response::{FrequencyResponse, modulus, unit_circle};
+use crate::open_loop::attitude_rows::seconds;
+use crate::open_loop::{LoopParts, TransferMatrices};
+
+/// Turns over a period below which the frequency of a line is next to 0.
+const SLOW: f64 = 1e-4;
+
+/// Complex amplitudes: a row for each output, axis or state, and a column for each load.
+pub type Amplitudes = DMatrix<Complex<f64>>;
+
+/// Solver of a loop.
+pub struct LineSolver {
+    period_rows: PeriodRows,
+    body: FrequencyResponse,
+    loop_over_period: FrequencyResponse,
+}
+
+/// Frequencies (rad/s, with a sign) of the lines over a period (s), the last that of the load.
+pub struct LineFrequencies {
+    pub frequencies: Vec<f64>,
+    pub period: f64,
+}
+
+/// Motion of a loop over a period under loads of one frequency, each alone.
+pub struct LoadedMotion {
+    /// Motion of the body under the loads alone.
+    alone: ForcedMotion,
+    /// What the law changes of the states at the start of a period.
+    change: Amplitudes,
+    /// Pieces of the period from the states under the loads alone.
+    pieces: Vec<Piece>,
+}
+
+impl LineSolver {
+    /// Prepares the solver of a loop.
+    ///
+    /// # Errors
+    /// Periods of the loop without a common multiple that is short enough.
+    pub fn new(parts: &LoopParts<'_>) -> Result<Self, ConfigError> {
+        let drivers: Vec<usize> = (0..parts.body.a.nrows()).collect();
+        let period_rows = PeriodRows::driven(parts, &[], &drivers)?;
+        let (body, whole) = (response(&parts.body.a), response(&period_rows.a));
+        Ok(Self { period_rows, body, loop_over_period: whole })
+    }
+
+    /// Returns the frequencies of the lines below the Nyquist frequency of the law, and last that of the load (rad/s).
+    pub fn turns(&self, frequency: f64) -> LineFrequencies {
+        let (period, nyquist) = (seconds(self.period_rows.period), PI / seconds(self.period_rows.step));
+        let first = libm::ceil((-nyquist - frequency) * period / TAU - 1e-9) as i64;
+        let last = libm::floor((nyquist - frequency) * period / TAU + 1e-9) as i64;
+        let turns = (first..=last).filter(|turn| *turn != 0).chain([0]);
+        let frequencies = turns.map(|turn| frequency + TAU * turn as f64 / period).collect();
+        LineFrequencies { frequencies, period }
+    }
+
+    /// Solves for the motion under loads of the frequency of the last of some lines, each alone.
+    ///
+    /// # Errors
+    /// A motion without damping at the frequency of the load.
+    pub fn solve(
+        &self,
+        parts: &LoopParts<'_>,
+        loads: &[SineLoad],
+        turns: &LineFrequencies,
+    ) -> Result<LoadedMotion, ConfigError> {
+        let frequency = turns.load();
+        let undamped = || undamped(frequency);
+        let entry = |row: usize, load: usize| Complex::new(loads[load].cosine[row], -loads[load].sine[row]);
+        let forcing = DMatrix::from_fn(parts.body.a.nrows(), loads.len(), entry);
+        let amplitudes = self.body.states(Complex::new(0.0, frequency), &forcing).ok_or_else(undamped)?;
+        let alone = ForcedMotion { amplitudes, frequency };
+        let (end, pieces) = self.period_rows.forced(parts, &alone)?;
+        let turn = unit_circle(frequency * turns.period);
+        let mut change = joined(&end);
+        for (place, state) in self.period_rows.kept.iter().enumerate() {
+            if *state < alone.amplitudes.nrows() {
+                let start = alone.amplitudes.row(*state) * turn;
+                let mut row = change.row_mut(place);
+                row -= start;
+            }
+        }
+        let change = self.loop_over_period.states(turn, &change).ok_or_else(undamped)?;
+        Ok(LoadedMotion { alone, change, pieces })
+    }
+
+    /// Returns the amplitudes of outputs at each frequency under each load alone; NaN next to the frequency 0.
+    pub fn amplitudes(
+        &self,
+        parts: &LoopParts<'_>,
+        motion: &LoadedMotion,
+        (rows, outputs): (&[OutputRow], &[usize]),
+        turns: &LineFrequencies,
+    ) -> Vec<Amplitudes> {
+        let torques = self.of_each(motion, |piece| &piece.torque);
+        let has_commands = outputs.iter().any(|output| matches!(rows[*output], OutputRow::Command(_)));
+        let commands = if has_commands { self.of_each(motion, |piece| &piece.command) } else { Vec::new() };
+        let mut found = Vec::with_capacity(turns.frequencies.len());
+        for (place, own) in turns.frequencies.iter().enumerate() {
+            let torque = turns.of_pieces(&motion.pieces, &torques, *own);
+            let body = if (own * turns.period).abs() < TAU * SLOW {
+                None
+            } else {
+                self.body.states(Complex::new(0.0, *own), &(parts.body.b.map(Complex::from) * torque))
+            };
+            let body = match body {
+                Some(body) if place + 1 == turns.frequencies.len() => Some(body + &motion.alone.amplitudes),
+                body => body,
+            };
+            let commanded = if has_commands {
+                turns.of_pieces(&motion.pieces, &commands, *own)
+            } else {
+                Amplitudes::zeros(0, 0)
+            };
+            let unknown = Complex::new(f64::NAN, 0.0);
+            let amplitude = |output: usize, load: usize| match &rows[outputs[output]] {
+                OutputRow::Command(axis) => commanded[(*axis, load)],
+                OutputRow::Body(row) => body.as_ref().map_or(unknown, |body| {
+                    row.iter().zip(&body.column(load)).map(|(entry, state)| state * *entry).sum()
+                }),
+            };
+            found.push(DMatrix::from_fn(outputs.len(), motion.change.ncols(), amplitude));
+        }
+        found
+    }
+
+    /// Returns the mean square modulus of outputs at the samples of the law, under each load alone.
+    pub fn sample_squares(
+        &self,
+        motion: &LoadedMotion,
+        (rows, outputs): (&[OutputRow], &[usize]),
+    ) -> DMatrix<f64> {
+        let bodies = self.of_each(motion, |piece| &piece.body);
+        let commands = self.of_each(motion, |piece| &piece.command);
+        let is_sample = |place: &usize| motion.pieces[*place].from % self.period_rows.step == 0;
+        let sampled: Vec<usize> = (0..motion.pieces.len()).filter(is_sample).collect();
+        let square = |output: usize, load: usize| {
+            let at = |place: &usize| match &rows[outputs[output]] {
+                OutputRow::Command(axis) => commands[*place][(*axis, load)].norm_sqr(),
+                OutputRow::Body(row) => {
+                    let states = bodies[*place].column(load);
+                    row.iter().zip(&states).map(|(c, x)| x * *c).sum::<Complex<f64>>().norm_sqr()
+                }
+            };
+            sampled.iter().map(at).sum::<f64>() / sampled.len() as f64
+        };
+        DMatrix::from_fn(outputs.len(), motion.change.ncols(), square)
+    }
+
+    /// Returns what a piece has, for each piece of a motion.
+    fn of_each(&self, motion: &LoadedMotion, of: fn(&Piece) -> &DMatrix<f64>) -> Vec<Amplitudes> {
+        let both = self.period_rows.pieces.iter().zip(&motion.pieces);
+        both.map(|(own, forced)| of(own).map(Complex::from) * &motion.change + joined(of(forced))).collect()
+    }
+}
+
+/// Returns the fault of a loop that a load of a frequency (rad/s) excites without limit.
+pub fn undamped(frequency: f64) -> ConfigError {
+    let hertz = number(frequency / TAU);
+    ConfigError::new("body", format!("has an undamped motion at {hertz} Hz, the frequency of a load"))
+}
+
+/// Returns the response of states, of which no output is asked for.
+fn response(a: &DMatrix<f64>) -> FrequencyResponse {
+    let (none, empty) = (DMatrix::zeros(a.nrows(), 0), DMatrix::zeros(0, a.nrows()));
+    FrequencyResponse::new(&TransferMatrices { a: a.clone(), b: none, c: empty, d: DMatrix::zeros(0, 0) })
+}
+
+impl LineFrequencies {
+    /// Returns the frequency of the load (rad/s).
+    pub fn load(&self) -> f64 {
+        self.frequencies.last().copied().unwrap_or_default()
+    }
+
+    /// Returns the lines of an output behind a mirror, if it is behind one, whose complex amplitudes before the mirror a function
+    /// gives for each frequency.
+    pub fn lines_behind(
+        &self,
+        mirror: Option<&MirrorOutput>,
+        amplitude: impl Fn(usize) -> Complex<f64>,
+    ) -> OutputLines {
+        let line = |(frequency, value): (f64, Complex<f64>)| SpectralLine {
+            frequency_rad_s: frequency.abs(),
+            amplitude: modulus(value),
+        };
+        let each = self.frequencies.iter().enumerate();
+        let before: Vec<_> = each.map(|(place, frequency)| (*frequency, amplitude(place))).collect();
+        let behind = mirror.map_or_else(|| before.clone(), |mirror| mirror.lines(&before));
+        let mut all: Vec<SpectralLine> = behind.into_iter().map(line).collect();
+        let direct = all.pop().unwrap_or_default();
+        all.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
+        OutputLines { direct, aliases: all }
+    }
+
+    /// Returns the amplitudes at a frequency of values that are constant in each piece.
+    fn of_pieces(&self, pieces: &[Piece], values: &[Amplitudes], frequency: f64) -> Amplitudes {
+        let (rows, columns) = values.first().map_or((0, 0), Amplitudes::shape);
+        let mut sum = Amplitudes::zeros(rows, columns);
+        for (piece, value) in pieces.iter().zip(values) {
+            let (from, length) = (seconds(piece.from), seconds(piece.length));
+            // The mean of exp(-j w t) over the piece.
+            let half = 0.5 * frequency * length;
+            let mean = if half.abs() < 1e-8 { 1.0 } else { libm::sin(half) / half };
+            sum += value * (unit_circle(-frequency * (from + 0.5 * length)) * (mean * length / self.period));
+        }
+        sum
+    }
+}

@@ -1,0 +1,413 @@
+//! Wheels on mounts: poles with whirl and lines against an independent computation, and what a wrong model gives.
+
+use std::f64::consts::TAU;
+
+use flexsc_core::Scenario;
+use flexsc_core::analysis::body_poles::WhirlPoles;
+use flexsc_core::analysis::eigenvalues::eigenvalues;
+use flexsc_core::analysis::linear_model::LinearModel;
+use flexsc_core::analysis::noise::{LineLoop, WheelImbalance};
+use flexsc_core::dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_core::numerics::attitude::Vector;
+use nalgebra::{Complex, DMatrix, DVector};
+use serde_json::Value as Json;
+
+use crate::optics::BENCH;
+use crate::util::Dir;
+
+/// Speed of the wheel (rad/s).
+const SPEED: f64 = 50.0 * TAU;
+/// Mount of the wheel, and the wheels: the first turns on it about y, the others on the hub, whose inertia has theirs.
+const MOUNT: &str =
+    "mount = { translation = \"22 Hz\", rocking = \"30 Hz\", damping = 0.06, axis = [0, 1, 0] }\n";
+const WHEELS: &str = "axes = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]\ninertia = 1.6e-3\npoints = [\"rotor\", \"hub\", \"hub\"]\n\
+                      speeds = [\"3000 rpm\", 0, 0]\nspeed_limit = \"6000 rpm\"\n\
+                      imbalance = { static = [3.6e-6, 0, 0], dynamic = [1.2e-7, 0, 0], phase = \"-90 deg\" }";
+
+/// Poles (Hz) and damping ratios with the wheel at rest and at 50 Hz. Source: `tests/golden/optics.py`.
+const AT_REST: [[f64; 2]; 8] = [
+    [22.129729556035, 0.060350872393241],
+    [22.248359037930, 0.060679935642693],
+    [22.264910367997, 0.060731518032173],
+    [30.001203343654, 0.060002330496146],
+    [30.002651123563, 0.060005527009659],
+    [80.033810866116, 0.0052543953156218],
+    [108.43408770995, 0.0049774143928063],
+    [146.82520732980, 0.0052557702719156],
+];
+const AT_50_HZ: [[f64; 2]; 8] = [
+    [9.1846416074301, 0.033563223402740],
+    [22.129729556082, 0.060350872393914],
+    [22.248366516367, 0.060679956425655],
+    [22.264963085721, 0.060731687508226],
+    [80.033810865950, 0.0052543953142881],
+    [98.112208779553, 0.033555599383730],
+    [108.43410637719, 0.0049777692770457],
+    [146.82520737471, 0.0052557709397193],
+];
+/// Sizes of the line of sight (rad) about x and y for forces (N) along x and z and torques (N m) about x and z on the wheel, on its
+/// mount at 22, 50 and 100 Hz. Source: the same.
+const RESPONSES: [(f64, [[f64; 4]; 2]); 3] = [
+    (
+        22.0,
+        [
+            [6.2768069211738e-08, 1.3909835165063e-06, 4.5951633557712e-07, 1.7058470863333e-06],
+            [9.9045757628924e-06, 3.0961372762634e-06, 4.4967602477892e-08, 9.3328873147214e-09],
+        ],
+    ),
+    (
+        50.0,
+        [
+            [4.9892963835350e-10, 3.3182825556842e-09, 3.4598293793565e-08, 9.5381328055671e-08],
+            [3.9193027039229e-08, 1.0464044010324e-08, 1.2691690063225e-09, 5.4121267538479e-10],
+        ],
+    ),
+    (
+        100.0,
+        [
+            [2.3733149988309e-10, 6.6825049743108e-09, 1.9183452287269e-06, 1.8652758340573e-06],
+            [9.3993043552148e-09, 9.0387472929822e-09, 6.3721485238420e-09, 6.5043873653103e-09],
+        ],
+    ),
+];
+/// Harmonics: order, force and torque over the square of the speed, and amplitudes (rad) about x and y at 50 Hz. Source: the same.
+const LINES: [(f64, f64, f64, [f64; 2]); 3] = [
+    (1.0, 3.6e-6, 1.2e-7, [4.8719984087525e-10, 1.4289030202365e-08]),
+    (2.0, 4.0e-7, 1.5e-8, [5.7730044583581e-09, 4.9415592526523e-10]),
+    (0.6, 2.0e-7, 0.0, [1.9451428940675e-09, 1.5161645067865e-08]),
+];
+
+/// Returns the bench with its wheel on the mount, with some texts replaced.
+fn bench(changes: &[(&str, &str)]) -> String {
+    let mut text = BENCH.to_owned();
+    let wheels = "arrangement = \"orthogonal\"\ninertia = 1e-7";
+    let unit = "name = \"wheel unit\"\n";
+    let inertia = "inertia = [[4.2, 0, 0], [0, 3.9, 0], [0, 0, 4.8]]";
+    let free = "inertia = [[4.2016, 0, 0], [0, 3.9016, 0], [0, 0, 4.8016]]";
+    let mounted = format!("{unit}{MOUNT}");
+    let own = [(wheels, WHEELS), (unit, mounted.as_str()), (inertia, free)];
+    for (from, to) in own.iter().chain(changes) {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    text
+}
+
+fn scenario(changes: &[(&str, &str)]) -> Scenario {
+    Scenario::parse("bench.toml", &bench(changes)).expect("a scenario")
+}
+
+/// Returns the state matrix with the wheel at a speed, and a soft loop on the hub's rotation as that of the reference.
+fn closed(scenario: &Scenario, speed: f64) -> DMatrix<f64> {
+    let model = LinearModel::at_wheel_speed(scenario, speed).expect("a linear body");
+    let matrix =
+        |rows: &[Vec<f64>]| DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column]);
+    let (a, b, c) = (matrix(&model.a), matrix(&model.b), matrix(&model.c));
+    let loop_frequency = 0.05 * TAU;
+    let hub = DMatrix::from_diagonal(&DVector::from_row_slice(&[4.2, 3.9, 4.8]));
+    let fed_back =
+        &hub * c.rows(0, 3) * (loop_frequency * loop_frequency) + hub * c.rows(3, 3) * (1.4 * loop_frequency);
+    a - b * fed_back
+}
+
+/// Returns the rates of the states per unit of a force and a torque on the wheel.
+fn load(body: &ThreeAxisModel, [force, torque]: [Vector; 2]) -> DVector<f64> {
+    let (place, shapes) = (body.point("rotor").expect("a point"), body.shapes("rotor"));
+    let mut column = DVector::zeros(6 + 2 * body.modes.len());
+    let turned = body.inertia.try_inverse().expect("an inertia") * (place.cross(&force) + torque);
+    column.rows_mut(3, 3).copy_from(&turned);
+    for (mode, (shift, turn)) in shapes.iter().enumerate() {
+        column[7 + 2 * mode] = shift.dot(&force) + turn.dot(&torque);
+    }
+    column
+}
+
+/// Returns the amplitudes of the line of sight about x and y under a load.
+fn seen(scenario: &Scenario, speed: f64, omega: f64, load: &DVector<Complex<f64>>) -> [f64; 2] {
+    let body = scenario.model.three_axis().expect("three axes");
+    let sight = scenario.line_of_sight[0].sensitivity(body);
+    let a = closed(scenario, speed).map(|entry| Complex::from(-entry));
+    let order = a.nrows();
+    let factor = a + DMatrix::from_diagonal_element(order, order, Complex::new(0.0, omega));
+    let states = factor.lu().solve(load).expect("a solution");
+    [0, 1].map(|about| {
+        let rigid: Complex<f64> = (0..3).map(|axis| states[axis] * sight.rigid[(about, axis)]).sum();
+        let modes = sight.modes.iter().enumerate();
+        (rigid + modes.map(|(mode, own)| states[6 + 2 * mode] * own[about]).sum::<Complex<f64>>()).norm()
+    })
+}
+
+fn close(found: f64, expected: f64, tolerance: f64, what: &str) {
+    assert!((found / expected - 1.0).abs() < tolerance, "{what}: {found:e} {expected:e}");
+}
+
+#[test]
+fn poles_split_by_whirl() {
+    let scenario = scenario(&[]);
+    for (speed, expected) in [(0.0, AT_REST), (SPEED, AT_50_HZ)] {
+        let mut poles = eigenvalues(&closed(&scenario, speed)).expect("poles");
+        poles.retain(|pole| pole.im > TAU);
+        poles.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+        assert_eq!(poles.len(), 8);
+        for (pole, [hertz, damping]) in poles.iter().zip(expected) {
+            close(pole.norm() / TAU, hertz, 1e-10, "frequency");
+            close(-pole.re / pole.norm(), damping, 1e-8, "damping");
+        }
+    }
+}
+
+/// On a base that does not move and without damping: w = sqrt(g² + w0²) +- g, g = Is W/(2 It).
+#[test]
+fn whirl_on_a_fixed_base() {
+    let heavy = [
+        ("mass = 62.0", "mass = 62e9"),
+        ("[[4.2016, 0, 0], [0, 3.9016, 0], [0, 0, 4.8016]]", "[[4.2e9, 0, 0], [0, 3.9e9, 0], [0, 0, 4.8e9]]"),
+        ("damping = 0.06", "damping = 0"),
+    ];
+    let scenario = scenario(&heavy);
+    let whirl =
+        WhirlPoles::from_scenario(&scenario, Some(SPEED)).expect("poles").expect("a wheel that is carried");
+    for expected in [9.177_460_053_394, 98.066_348_942_282] {
+        let nearest = whirl.poles.iter().map(|pole| (pole.frequency_rad_s / TAU / expected - 1.0).abs());
+        assert!(nearest.fold(1.0, f64::min) < 1e-9, "{expected}: {whirl:?}");
+    }
+}
+
+#[test]
+fn responses_to_loads_on_the_wheel() {
+    let scenario = scenario(&[]);
+    let body = scenario.model.three_axis().expect("three axes");
+    let none = Vector::zeros();
+    let loads = [[Vector::x(), none], [Vector::z(), none], [none, Vector::x()], [none, Vector::z()]];
+    for (hertz, expected) in RESPONSES {
+        for (place, own) in loads.into_iter().enumerate() {
+            let found = seen(&scenario, SPEED, hertz * TAU, &load(body, own).map(Complex::from));
+            for about in [0, 1] {
+                close(found[about], expected[about][place], 1e-9, &format!("{hertz} Hz, {about} {place}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn lines_of_a_wheel_on_its_mount() {
+    let scenario = scenario(&[]);
+    let body = scenario.model.three_axis().expect("three axes");
+    for (order, force, torque, expected) in LINES {
+        // The force turns from x towards -z, and the torque is 90 deg behind.
+        let parts = [load(body, [Vector::x(), Vector::zeros()]), load(body, [-Vector::z(), Vector::zeros()])];
+        let torques =
+            [load(body, [Vector::zeros(), Vector::x()]), load(body, [Vector::zeros(), -Vector::z()])];
+        let turning = |[cosine, sine]: &[DVector<f64>; 2], size: f64| {
+            cosine.map(Complex::from) * Complex::from(size)
+                + sine.map(Complex::from) * Complex::new(0.0, -size)
+        };
+        let square = SPEED * SPEED;
+        let all =
+            turning(&parts, force * square) + turning(&torques, torque * square) * Complex::new(0.0, -1.0);
+        let found = seen(&scenario, SPEED, order * SPEED, &all);
+        for about in [0, 1] {
+            close(found[about], expected[about], 1e-9, &format!("order {order} about {about}"));
+        }
+    }
+}
+
+/// Returns the amplitudes of the first wheel's lines about x and y, as the linear loop of the scenario has them.
+fn wheel_lines(changes: &[(&str, &str)]) -> [f64; 2] {
+    let scenario = scenario(changes);
+    let imbalance = WheelImbalance::from_scenario(&scenario).expect("wheels").expect("imbalance");
+    let lines = LineLoop::from_scenario(&scenario).expect("a loop");
+    let outputs = ["line_of_sight0_x", "line_of_sight0_y"].map(|name| lines.output(name).expect("an output"));
+    let found = imbalance.lines(&lines, &[SPEED], &outputs).expect("lines");
+    [0, 1].map(|about| found[0].outputs[about].direct.amplitude)
+}
+
+/// The right model, and those that leave something out, by the same keys. Source: `tests/golden/optics.py`.
+#[test]
+fn wrong_models_give_other_lines() {
+    let points = "points = [\"rotor\", \"hub\", \"hub\"]\n";
+    let harmonic = "imbalance = { harmonics = [{ order = 2.0, torque = 1.5e-8 }] }";
+    let imbalance = "imbalance = { static = [3.6e-6, 0, 0], dynamic = [1.2e-7, 0, 0], phase = \"-90 deg\" }";
+    let at_rotor = "phase = \"-90 deg\", point = \"rotor\" }";
+    let cases: [(&str, &[(&str, &str)], [f64; 2]); 5] = [
+        ("whirl", &[], [4.8702087203377e-10, 1.4287037885361e-08]),
+        ("about -y", &[("\"3000 rpm\"", "\"-3000 rpm\"")], [4.0377772072511e-10, 1.4578922788722e-08]),
+        ("second harmonic", &[(imbalance, harmonic)], [5.6005219679240e-09, 1.9057507813149e-11]),
+        // A mount without whirl: the first harmonic is 8 times too large about x.
+        (
+            "momentum in the hub",
+            &[(points, ""), ("phase = \"-90 deg\" }", at_rotor)],
+            [3.9131538634418e-09, 1.4229310751825e-08],
+        ),
+        // Loads on the hub: the mount has no effect on them.
+        ("bolted", &[(MOUNT, "")], [9.2774960035949e-09, 5.6040188971050e-08]),
+    ];
+    for (name, changes, expected) in cases {
+        let found = wheel_lines(changes);
+        for about in [0, 1] {
+            close(found[about], expected[about], 1e-6, &format!("{name} about {about}"));
+        }
+    }
+}
+
+fn numbers(value: &Json) -> Vec<f64> {
+    value.as_array().expect("a list").iter().map(|own| own.as_f64().expect("a number")).collect()
+}
+
+/// Both maxima about y and the one about x, without a start near to them: speed (Hz) and amplitude (rad).
+#[test]
+fn worst_speeds_are_found() {
+    let dir = Dir::new();
+    dir.write("bench.toml", bench(&[("bandwidth = 1.0", "bandwidth = 0.001")]));
+    let found =
+        dir.run("spectrum bench.toml --signal line_of_sight0_x,line_of_sight0_y --json").exits(0).json();
+    let speeds = numbers(&found["wheels"]["speed_rad_s"]);
+    for (about, hertz, amplitude) in [
+        (0, 22.057875182561, 9.364150195328e-8),
+        (1, 80.035300411127, 7.549015674549e-7),
+        (1, 22.157404172463, 7.159720924519e-7),
+    ] {
+        let rms = numbers(&found["wheels"]["rms"][about]);
+        let near = speeds.iter().zip(&rms).filter(|(speed, _)| (*speed / TAU / hertz - 1.0).abs() < 2e-6);
+        let largest = near.map(|(_, rms)| rms * f64::sqrt(2.0)).fold(0.0, f64::max);
+        // Aliases of the slow loop are in the rms.
+        close(largest, amplitude, 1e-5, &format!("{hertz} Hz"));
+    }
+}
+
+/// Returns the keys of a bench whose mount is uncertain.
+fn uncertain() -> String {
+    let ranges = "\n[uncertain]\n\"appendage[1].mount.rocking\" = { uniform = [\"26 Hz\", \"34 Hz\"] }\n\
+                  \"appendage[1].mount.damping\" = { uniform = [0.03, 0.09] }\n";
+    bench(&[]) + ranges
+}
+
+/// The worst of the mount: the lightest damping, where the translation at 22 Hz, and not the rocking, is the peak about x.
+#[test]
+fn the_worst_mount_is_the_least_damped() {
+    let dir = Dir::new();
+    dir.write("bench.toml", uncertain());
+    let arguments = "worst bench.toml --signal line_of_sight0_x --points 30 --json";
+    let found = dir.run(arguments).exits(0).json();
+    let case = &found["cases"][0];
+    let damping = case["keys"]["appendage[1].mount.damping"].as_f64().expect("a number");
+    assert!((damping - 0.03).abs() < 1e-9, "{case}");
+    let least = bench(&[("damping = 0.06", "damping = 0.03")]);
+    dir.write("least.toml", least);
+    let own = dir.run("spectrum least.toml --signal line_of_sight0_x --json").exits(0).json();
+    let largest = numbers(&own["wheels"]["rms"][0]).into_iter().fold(0.0, f64::max);
+    // The rocking frequency hardly changes it.
+    close(case["worst"].as_f64().expect("a number"), largest, 1e-3, "rms");
+    assert!(case["worst"].as_f64() > case["nominal"].as_f64().map(|nominal| 1.5 * nominal), "{case}");
+}
+
+#[test]
+fn modes_are_printed_at_a_speed() {
+    let dir = Dir::new();
+    dir.write("bench.toml", bench(&[]));
+    let found = dir.run(&format!("modes bench.toml --speed {SPEED} --json")).exits(0).json();
+    let poles = found["whirl"]["poles"].as_array().expect("poles");
+    // The loop of the reference is soft.
+    for [hertz, damping] in AT_50_HZ {
+        let matches = |pole: &&Json| {
+            let number = |key: &str| pole[key].as_f64().expect("a number");
+            (number("frequency_rad_s") / TAU / hertz - 1.0).abs() < 1e-4
+                && (number("damping") / damping - 1.0).abs() < 0.05
+        };
+        assert!(poles.iter().any(|pole| matches(&pole)), "{hertz}: {poles:?}");
+    }
+    let text = dir.run(&format!("modes bench.toml --speed {SPEED}")).exits(0);
+    text.says(&["poles of the body with its wheels at 3000 rpm"]);
+    dir.write("bolted.toml", bench(&[(MOUNT, "")]));
+    dir.run("modes bolted.toml --speed 1").exits(2).says(&["--speed", "actuator.wheels.points"]);
+}
+
+/// A run at a steady speed vibrates by the second harmonic as its line does; without whirl it would be 22 times less. At 50.2 Hz the alias
+/// is no constant.
+#[test]
+fn runs_whirl_as_linear_loops_do() {
+    let speed = 3013.0 * TAU / 60.0;
+    let quiet = [
+        ("angle_random_walk = 1e-6", "angle_random_walk = 1e-13"),
+        ("noise = [1e-5, 1e-5, 1e-5]", "noise = [1e-13, 1e-13, 1e-13]"),
+        ("period = 0.01\noptics", "period = 0.0017\noptics"),
+        ("\"3000 rpm\"", "\"3013 rpm\""),
+        (
+            "imbalance = { static = [3.6e-6, 0, 0], dynamic = [1.2e-7, 0, 0], phase = \"-90 deg\" }",
+            "imbalance = { harmonics = [{ order = 2.0, torque = 1.5e-8 }] }",
+        ),
+    ];
+    let dir = Dir::new();
+    dir.write("bench.toml", bench(&quiet));
+    let window = "--set duration=24 --set line_of_sight[0].window=[20,24] --log none --json";
+    let run = dir.run(&format!("simulate bench.toml {window}")).exits(0).json();
+    let rms = run["metrics"]["line_of_sight_rms_rad"][0].as_f64().expect("a number");
+    let signals = "--signal line_of_sight0_x,line_of_sight0_y";
+    let linear =
+        dir.run(&format!("spectrum bench.toml {signals} --speeds {speed}:{speed}:1 --json")).exits(0).json();
+    // The other wheels rest in the run.
+    let lines = linear["wheels"]["lines"].as_array().expect("lines").iter();
+    let outputs =
+        lines.filter(|own| own["wheel"] == 1).flat_map(|own| own["outputs"].as_array().expect("outputs"));
+    let squares = outputs.map(|own| 0.5 * own["direct"]["amplitude"].as_f64().expect("a number").powi(2));
+    close(rms, squares.sum::<f64>().sqrt(), 5e-3, "rms");
+}
+
+#[test]
+fn mounts_that_do_not_hold_are_refused() {
+    let dir = Dir::new();
+    let stiff = "mount = { stiffness = [[1e4, 0, 0, 0, 0, 0], [0, 1e4, 0, 0, 0, 0], [0, 0, 1e4, 0, 0, 0], [0, 0, 0, 30, 0, 0], [0, 0, 0, 0, 30, 0], [0, 0, 0, 0, 9, 30]] }\n";
+    let flat = "mount = { stiffness = [[0, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]] }\n";
+    let no_modes = format!("{MOUNT}modes = [{{ frequency = 1.0 }}]\n");
+    for (from, to, why) in [
+        ("rocking = \"30 Hz\", ", "", "`appendage[1].mount.rocking` must be given"),
+        ("axis = [0, 1, 0] }", "axis = [0, 0, 0] }", "`appendage[1].mount.axis` must have a length"),
+        (MOUNT, stiff, "`appendage[1].mount.stiffness` must be symmetric"),
+        (MOUNT, flat, "`appendage[1].mount.stiffness` must be positive definite"),
+        (MOUNT, no_modes.as_str(), "`appendage[1].modes` must be left out"),
+        (
+            "[\"rotor\", \"hub\", \"hub\"]",
+            "[\"rotor\", \"hub\"]",
+            "`actuator.wheels.points` must be one for all, or one for each of 3 wheels",
+        ),
+        (
+            "[\"rotor\", \"hub\", \"hub\"]",
+            "[\"rotor\", \"hub\", \"bus\"]",
+            "`actuator.wheels.points[2]` must be one of the body's points",
+        ),
+        (
+            "phase = \"-90 deg\" }",
+            "point = \"rotor\" }",
+            "`actuator.wheels.imbalance.point` must be left out",
+        ),
+    ] {
+        dir.write("bench.toml", bench(&[(from, to)]));
+        dir.run("check bench.toml").exits(2).says(&[why]);
+    }
+}
+
+/// A stiffness at the root is that of the frequencies: k = m w² along, and I w² about each axis.
+#[test]
+fn a_stiffness_is_what_its_frequencies_are() {
+    let square = |hertz: f64| (hertz * TAU) * (hertz * TAU);
+    let (along, about) = (0.95 * square(22.0), 9e-4 * square(30.0));
+    let rows: Vec<String> = (0..6)
+        .map(|row| {
+            let entry = |column: usize| {
+                if row == column && row < 3 {
+                    along
+                } else if row == column {
+                    about
+                } else {
+                    0.0
+                }
+            };
+            format!("{:?}", [0, 1, 2, 3, 4, 5].map(entry))
+        })
+        .collect();
+    let mount =
+        format!("mount = {{ stiffness = [{}], damping = 0.06, axis = [0, 1, 0] }}\n", rows.join(", "));
+    for (own, expected) in wheel_lines(&[(MOUNT, &mount)]).into_iter().zip(wheel_lines(&[])) {
+        close(own, expected, 1e-9, "stiffness");
+    }
+}
