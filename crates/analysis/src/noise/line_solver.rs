@@ -20,7 +20,7 @@ use crate::open_loop::attitude_rows::seconds;
 use crate::open_loop::{LoopParts, TransferMatrices};
 
 /// Turns over a period below which the frequency of a line is next to 0.
-const SLOW: f64 = 1e-4;
+const SLOW: f64 = 3e-6;
 
 /// Complex amplitudes: a row for each output, axis or state, and a column for each load.
 pub type Amplitudes = DMatrix<Complex<f64>>;
