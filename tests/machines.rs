@@ -50,17 +50,17 @@ fn broadband_forces_move_the_line_of_sight_as_covariances_say() {
         assert_eq!(report["sources"], serde_json::json!(["disturbance[0].density"]));
         for about in 0..2 {
             let output = &report["outputs"][about];
-            agree("rms", number(&output["rms"]), over_time[about], 1e-6);
-            agree("source", number(&output["rms_by_source"][0]), over_time[about], 1e-6);
-            agree("samples", number(&output["sample_rms"]), at_samples[about], 1e-6);
-            agree("mean", number(&output["window"]["mpe"]), means[about], 1e-6);
+            agree("rms", number(&output["rms"]), over_time[about], 1e-7);
+            agree("source", number(&output["rms_by_source"][0]), over_time[about], 1e-7);
+            agree("samples", number(&output["sample_rms"]), at_samples[about], 1e-7);
+            agree("mean", number(&output["window"]["mpe"]), means[about], 1e-7);
             let last = output["cumulative_rms"].as_array().and_then(|all| all.last()).expect("numbers");
             // At 1 kHz the loop is nearly the continuous one of the bench, whose wheel turns.
             if period < 0.005 {
                 let bench = [(5.755_262_772e-8, 1e-4), (6.211_101_866e-8, 2e-3)];
                 agree("bench", number(&output["rms"]), bench[about].0, bench[about].1);
             }
-            agree("cumulative", number(last), over_time[about], 1e-6);
+            agree("cumulative", number(last), over_time[about], 1e-7);
         }
     }
 }
@@ -93,7 +93,8 @@ fn lines_of_a_machine_are_at_their_worst_frequency() {
     let nominal = [(5.618_647_738_181e-10, 9.551_164_11e-10), (3.128_011_993_153e-10, 4.441_789_69e-10)];
     for (about, (rms, peak)) in nominal.into_iter().enumerate() {
         let found = machines(about, bench(0.01, COOLER));
-        agree("rms", found[1], rms, 1e-7);
+        // Aliases above the Nyquist frequency of the law are not among the lines.
+        agree("rms", found[1], rms, 1e-6);
         agree("peak", found[2], peak, 1e-7);
     }
     let wide = COOLER.replace("harmonics", "tolerance = 0.1\nharmonics");
