@@ -42,7 +42,7 @@ pub struct LineFrequencies {
 pub struct LoadedMotion {
     /// Motion of the body under the loads alone.
     alone: ForcedMotion,
-    /// What the law changes of the states at the start of a period.
+    /// Difference that the law makes to the states at the start of a period.
     change: Amplitudes,
     /// Pieces of the period from the states under the loads alone.
     pieces: Vec<Piece>,

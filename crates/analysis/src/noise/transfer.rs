@@ -126,7 +126,7 @@ impl<'a> LoopTransfer<'a> {
         }
     }
 
-    /// Returns whether an output is behind a mirror.
+    /// Returns true if an output is behind a mirror.
     pub fn has_mirror(&self, output: usize) -> bool {
         self.lines.mirror(self.outputs[output]).is_some()
     }
