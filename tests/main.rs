@@ -74,6 +74,7 @@ mod linear_budgets;
 mod loads;
 mod loops;
 mod lqg;
+mod machines;
 mod magnetic;
 mod manoeuvres;
 mod margins;

@@ -104,6 +104,17 @@ impl ForceEffect {
         self.levers.iter_mut().zip(&other.levers).for_each(|(sum, lever)| *sum += lever * by);
     }
 
+    /// Adds the effect of a torque (N m) at a named point.
+    pub fn add_torque(&mut self, body: &ThreeAxisModel, point: &str, torque: &Vector) {
+        self.torque += torque;
+        let shapes = body.shapes(point);
+        self.forces.resize(shapes.len(), 0.0);
+        for (sum, (_, rotation)) in self.forces.iter_mut().zip(shapes) {
+            *sum += rotation.dot(torque);
+        }
+        self.levers.resize(self.forces.len(), Vector::zeros());
+    }
+
     /// Adds the effect of a force (N) that acts at an offset (m) from a named point.
     pub fn add(&mut self, body: &ThreeAxisModel, point: &str, offset: &Vector, force: &Vector) {
         let moment = offset.cross(force);

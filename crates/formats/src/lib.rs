@@ -12,6 +12,7 @@ pub mod element_message;
 pub mod ephemeris;
 pub mod foreign_file;
 pub mod harmonic_table;
+pub mod load_density_table;
 pub mod load_table;
 pub mod number;
 pub mod read_files;

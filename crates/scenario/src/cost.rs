@@ -11,6 +11,7 @@ use flexsc_numerics::quantity::NonNegative;
 use flexsc_numerics::time::Span;
 use flexsc_record::Detail;
 use flexsc_relay_kernel::{SWITCHINGS, shortest_window};
+use flexsc_spacecraft::load_density::LoadDensity;
 
 use super::Scenario;
 use super::pace::{PUSHES, QUIET_STEPS, STEP, SWITCHES, TURNS};
@@ -319,6 +320,12 @@ impl Scenario {
             let until = disturbance.to.map_or(duration, |to| to.get().min(duration));
             let span = (until - disturbance.from.get()).max(0.0);
             let mut add = |key: &str, count: f64| steps.push((format!("disturbance[{index}].{key}"), count));
+            if let Some(step) = disturbance.density.as_ref().and_then(LoadDensity::step) {
+                add("density.upper", span / step.seconds());
+            }
+            if let Some(lines) = &disturbance.lines {
+                add("lines.frequency", span / lines.step().seconds());
+            }
             let rows = disturbance.rows().len();
             if rows > 0 {
                 add("table", rows as f64);

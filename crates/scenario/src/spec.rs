@@ -15,7 +15,6 @@ use flexsc_control::operation::{ModeTarget, OperatingMode};
 use flexsc_control::sensor::SensorKind;
 use flexsc_flight_precision::Precision;
 use flexsc_formats::document::ConfigError;
-use flexsc_formats::load_table::LoadTable;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::craft::{Appendage, Spacecraft};
@@ -256,7 +255,7 @@ impl ScenarioSpec {
             spatial.modes.inline();
         }
         self.appendage.iter_mut().for_each(Appendage::inline_modes);
-        self.disturbance.iter_mut().filter_map(|own| own.table.as_mut()).for_each(LoadTable::inline);
+        self.disturbance.iter_mut().for_each(Disturbance::inline);
         let date = self.date_ns();
         if let Some(around) = &mut self.environment {
             around.inline_files(date);

@@ -3,6 +3,7 @@
 use flexsc_control::custom::PartError;
 use flexsc_numerics::time::Instant;
 use flexsc_record::RecordError;
+use flexsc_spacecraft::load_density::TABLE_HAS_NO_RUN;
 use thiserror::Error;
 
 /// Error that ends a simulation.
@@ -74,6 +75,12 @@ pub enum SimulationError {
         at: Instant,
         /// Number of events within a nanosecond.
         count: u32,
+    },
+    /// A broadband load over frequency has no filters that a run could simulate.
+    #[error("`disturbance[{index}].density.table` {TABLE_HAS_NO_RUN}")]
+    DensityTable {
+        /// Index of the disturbance.
+        index: usize,
     },
     /// A custom part cannot go on.
     #[error("the {role} at t = {at} s: {source}")]

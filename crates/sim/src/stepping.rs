@@ -144,6 +144,9 @@ impl Simulation {
     /// # Errors
     /// Fails like [`Simulation::run_until`].
     pub fn open(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+        if let Some(index) = self.loads.density_without_run() {
+            return Err(SimulationError::DensityTable { index });
+        }
         let now = self.clock.now();
         if self.recorder.open(now, record)? {
             self.plant.evaluate(now)?;

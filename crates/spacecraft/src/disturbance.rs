@@ -1,5 +1,5 @@
-//! Disturbances from one time to another: torques, constant, random and over time, and forces at a point, steady, in pulses
-//! or over time.
+//! Disturbances from one time to another: torques, constant, random and over time, and forces at a point, steady, in pulses,
+//! over time or random.
 
 use std::path::Path;
 
@@ -16,6 +16,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::axes::Axis;
+use crate::load_density::LoadDensity;
+use crate::load_lines::LoadLines;
+use crate::machine_load::{MachineLoad, ToneLoad};
+use crate::shaped_load::ShapedLoad;
 use crate::sine::Sine;
 
 /// A disturbance: a torque about an axis, or a force at a point.
@@ -35,7 +39,7 @@ pub struct Disturbance {
     /// Force in the body's axes (N) in place of a torque, on a body with three axes: a leak, a stuck jet, a push.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<[Finite; 3]>,
-    /// Name of the point at which the force acts; default: the first.
+    /// Name of the point at which the force, the density or the lines act; default: the first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
     /// Spectral density of white noise added to the torque ((N m)² s); each draw is held for `period`.
@@ -51,6 +55,12 @@ pub struct Disturbance {
     /// constant ones; times are from the start of the run. Each is held until the next, the last until `to`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<LoadTable>,
+    /// Broadband force and torque at the point in place of a steady force, by their spectral densities.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<LoadDensity>,
+    /// Sinusoidal force and torque at the point in place of a steady force: the lines of a machine.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lines: Option<LoadLines>,
     /// Start time (s).
     #[serde(default)]
     pub from: Time,
@@ -87,10 +97,25 @@ impl Disturbance {
 
     /// Returns the effect of a force (N) at the point of the disturbance.
     fn effect(&self, body: &ThreeAxisModel, force: &Vector) -> ForceEffect {
-        let first = body.points.first().map_or("", |point| &point.name);
         let mut push = ForceEffect::default();
-        push.add(body, self.point.as_deref().unwrap_or(first), &Vector::zeros(), force);
+        push.add(body, self.place(body), &Vector::zeros(), force);
         push
+    }
+
+    /// Returns the name of the point at which it acts.
+    fn place<'a>(&'a self, body: &'a ThreeAxisModel) -> &'a str {
+        let first = body.points.first().map_or("", |point| &point.name);
+        self.point.as_deref().unwrap_or(first)
+    }
+
+    /// Returns the effect of a unit of the force along, or of the torque about, x, y or z at the point: the force first.
+    pub fn unit_effect(&self, body: &ThreeAxisModel, part: usize) -> ForceEffect {
+        if part < 3 {
+            return self.effect(body, &unit(part));
+        }
+        let mut turn = ForceEffect::default();
+        turn.add_torque(body, self.place(body), &unit(part - 3));
+        turn
     }
 
     /// Returns the rows of the table; empty without one.
@@ -100,13 +125,28 @@ impl Disturbance {
 
     /// Returns true if the disturbance is a force.
     pub fn is_force(&self) -> bool {
-        self.force.is_some() || self.rows().first().is_some_and(|row| row.len() == 4)
+        let is_table = self.rows().first().is_some_and(|row| row.len() == 4);
+        self.force.is_some() || self.density.is_some() || self.lines.is_some() || is_table
     }
 
-    /// Reads the file of the table relative to `directory`; returns a key within the disturbance and the reason.
+    /// Reads the files of the tables relative to `directory`; returns a key within the disturbance and the reason.
     pub fn read(&mut self, directory: &Path) -> Option<ConfigError> {
+        let densities = self.density.as_mut().and_then(|density| density.table.as_mut());
+        if let Some(why) = densities.and_then(|table| table.read(directory).err()) {
+            return Some(ConfigError::new("density.table", why));
+        }
         let why = self.table.as_mut()?.read(directory).err()?;
         Some(ConfigError::new("table", why))
+    }
+
+    /// Keeps the rows of the tables inline, and removes the references to their files.
+    pub fn inline(&mut self) {
+        if let Some(table) = &mut self.table {
+            table.inline();
+        }
+        if let Some(table) = self.density.as_mut().and_then(|density| density.table.as_mut()) {
+            table.inline();
+        }
     }
 
     /// Returns a key that is inconsistent on a three-axis body, with the reason.
@@ -116,10 +156,26 @@ impl Disturbance {
         if self.table.is_some() && self.force.is_some() {
             return refused("table", "takes the place of a constant `force`: give one of them");
         }
+        let machine = self.density.as_ref().map(|density| ("density", density.validate()));
+        let machine = machine.or_else(|| Some(("lines", self.lines.as_ref()?.validate())));
+        if let Some((key, fault)) = machine {
+            let given = [
+                self.force.is_some(),
+                self.table.is_some(),
+                self.pulse.is_some(),
+                self.lines.is_some() && key != "lines",
+            ];
+            if given.contains(&true) || noisy || self.torque.get() != 0.0 || !self.sines.is_empty() {
+                return refused(key, "must be alone: give other loads as a `[[disturbance]]` of their own");
+            }
+            if let Some(fault) = fault {
+                return Some(fault.within(key));
+            }
+        }
         match (self.is_force(), self.about) {
             (false, None) => refused(
                 "about",
-                "must be given for a torque on a body with three axes: `roll`, `pitch` or `yaw`; or give a `force`",
+                "must be given for a torque on a body with three axes: `roll`, `pitch` or `yaw`; or give a `force`, a `density` or `lines`",
             ),
             (false, Some(_)) if self.point.is_some() => {
                 refused("point", "applies only to a `force`: a torque acts at the body's first point")
@@ -142,7 +198,13 @@ impl Disturbance {
     pub fn validate_one_axis(&self) -> Option<ConfigError> {
         if self.is_force() || self.point.is_some() {
             let why = "acts on a body with three axes: use a `torque` for a body with one angle";
-            return Some(ConfigError::new(if self.force.is_some() { "force" } else { "table" }, why));
+            let keys = [
+                ("force", self.force.is_some()),
+                ("density", self.density.is_some()),
+                ("lines", self.lines.is_some()),
+            ];
+            let key = keys.iter().find(|(_, is_given)| *is_given).map_or("table", |(key, _)| key);
+            return Some(ConfigError::new(key, why));
         }
         let why = "names one of three axes, and the body has one angle";
         self.about.map(|_| ConfigError::new("about", why))
@@ -194,6 +256,8 @@ pub struct DisturbanceState {
     /// Pulse train: start of the last pulse, true if the pulse is on, and instant of the next switching.
     beat: Option<(Instant, bool, Instant)>,
     draws: Stream,
+    /// Load of a machine, and the instant at which it changes next.
+    machine: Option<(MachineLoad, Instant)>,
     /// Draw of the noise that is held now (N m); `next` is the instant of the next draw.
     drawn: f64,
     next: Option<Instant>,
@@ -201,12 +265,24 @@ pub struct DisturbanceState {
 
 impl DisturbanceState {
     /// Creates a disturbance before its start, with a random stream of its own; `body` is given if it has three axes.
-    pub fn new(disturbance: &Disturbance, body: Option<&ThreeAxisModel>, draws: Stream) -> Self {
+    pub fn new(disturbance: &Disturbance, body: Option<&ThreeAxisModel>, mut draws: Stream) -> Self {
         let noisy = disturbance.noise.get() > 0.0 && disturbance.period.is_some();
+        let machine = body.and_then(|body| {
+            let unit = |part| disturbance.unit_effect(body, part);
+            match (&disturbance.density, &disturbance.lines) {
+                (Some(density), _) => ShapedLoad::new(density, unit, &mut draws).map(MachineLoad::Shaped),
+                (None, Some(lines)) => Some(MachineLoad::Tones(ToneLoad::new(lines, unit, &mut draws))),
+                (None, None) => None,
+            }
+        });
         Self {
+            push: match &machine {
+                Some(machine) => Some(machine.effect()),
+                None => body.and_then(|body| disturbance.force_effect(body)),
+            },
+            machine: machine.map(|machine| (machine, at(disturbance.from))),
             next: noisy.then(|| at(disturbance.from)),
             beat: disturbance.pulse.map(|_| (at(disturbance.from), false, at(disturbance.from))),
-            push: body.and_then(|body| disturbance.force_effect(body)),
             units: match body.filter(|_| disturbance.table.is_some() && disturbance.is_force()) {
                 Some(body) => (0..3).map(|axis| disturbance.effect(body, &unit(axis))).collect(),
                 None => Vec::new(),
@@ -219,12 +295,18 @@ impl DisturbanceState {
         }
     }
 
+    /// Returns true for a broadband load whose density is a table: a run has no filters for it.
+    pub fn lacks_run(&self) -> bool {
+        self.disturbance.density.is_some() && self.machine.is_none()
+    }
+
     /// Returns the instant of the next noise draw or pulse edge.
     pub fn due(&self) -> Option<Instant> {
         let ends = |next: &Instant| self.disturbance.to.is_none_or(|to| *next < at(to));
         let beat = self.beat.map(|(_, _, next)| next).filter(ends);
         let row = self.disturbance.rows().get(self.row).map(|row| instant(row[0])).filter(ends);
-        [self.next, beat, row].into_iter().flatten().min()
+        let machine = self.machine.as_ref().map(|(_, next)| *next).filter(ends);
+        [self.next, beat, row, machine].into_iter().flatten().min()
     }
 
     /// Returns true if the disturbance acts at `now`, within a pulse if it is pulsed.
@@ -253,6 +335,13 @@ impl DisturbanceState {
                 *push = ForceEffect::default();
                 self.units.iter().zip(&row[1..]).for_each(|(unit, size)| push.add_scaled(unit, *size));
             }
+        }
+        if let Some((machine, next)) = &mut self.machine {
+            while *next <= now {
+                machine.advance(&mut self.draws);
+                *next = *next + machine.step();
+            }
+            self.push = Some(machine.effect());
         }
         let Some(period) = self.disturbance.period else { return };
         while let Some(next) = self.next.filter(|next| *next <= now) {

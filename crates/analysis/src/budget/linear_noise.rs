@@ -1,8 +1,11 @@
-//! Noise of the pointing indices of a sampled error under the noise of the linear loop, exact from its covariance.
+//! Noise of the pointing indices of a sampled error under the noise of the linear loop, exact from its covariance, and under
+//! broadband loads, by the gains of the indices on their lines.
 
 use flexsc_numerics::attitude::AXES;
+use nalgebra::Complex;
 
-use crate::noise::{NoisyLoop, OutputSamples, SampleSets, SampleTimes};
+use crate::margins::frequency_response::unit_circle;
+use crate::noise::{LineLoop, NoisyLoop, OutputSamples, SampleSets, SampleTimes, SpectralLine, Vibration};
 use flexsc_scenario::{ErrorAxis, SampledError, SampledQuantity};
 
 /// Largest number of periods of the loop in a window.
@@ -12,17 +15,31 @@ const MOST_NUMBERS: f64 = 1e8;
 
 /// Returns the rms of the index of an error under the noise of the loop, of the norm if the error has several components;
 /// `None` if the loop has no such output, or for a window that is too long for it.
-pub fn linear_noise(noisy: &NoisyLoop, error: &SampledError) -> Option<f64> {
+pub fn linear_noise(noisy: &NoisyLoop, lines: &LineLoop<'_>, error: &SampledError) -> Option<f64> {
     let outputs: Vec<usize> = output_names(error).iter().filter_map(|name| noisy.output(name)).collect();
     if outputs.is_empty() {
         return None;
     }
+    let vibration = &index_vibration(lines, &outputs, error)?;
     let mut sum = 0.0;
     for output in outputs {
-        let each = index_variances(noisy, output, error)?;
+        let each = index_variances((noisy, vibration), output, error)?;
         sum += each.iter().sum::<f64>() / each.len() as f64;
     }
     Some(f64::sqrt(sum))
+}
+
+/// Returns the motion of outputs under machines, each of which has the worst frequency for the index of an error; `None` if the loop is
+/// not linear.
+pub(super) fn index_vibration(
+    lines: &LineLoop<'_>,
+    outputs: &[usize],
+    error: &SampledError,
+) -> Option<Vibration> {
+    let measure = |_: usize, lines: &[SpectralLine]| {
+        line_variances(lines.iter(), error).map_or(0.0, |variances| variances.iter().sum())
+    };
+    Vibration::new(lines, outputs, &measure).ok()
 }
 
 /// Returns the names that the outputs of an error may have: about each axis, and of a body with one angle.
@@ -63,7 +80,11 @@ pub fn noise_cycle(noisy: Option<&NoisyLoop>, error: &SampledError) -> usize {
 
 /// Returns the variances of an index of an output: for each set of samples that differs from others, at each place of the
 /// index; `None` for a window that is too long for the loop.
-pub(super) fn index_variances(noisy: &NoisyLoop, output: usize, error: &SampledError) -> Option<Vec<f64>> {
+pub(super) fn index_variances(
+    (noisy, vibration): (&NoisyLoop, &Vibration),
+    output: usize,
+    error: &SampledError,
+) -> Option<Vec<f64>> {
     let periods = error.index.reach() as f64 * error.period.seconds() / noisy.period;
     let is_uniform = error.index.places() > 1;
     if periods > MOST_PERIODS || is_uniform && periods * noisy.size() as f64 > MOST_NUMBERS {
@@ -71,14 +92,45 @@ pub(super) fn index_variances(noisy: &NoisyLoop, output: usize, error: &SampledE
     }
     let mut samples = OutputSamples::new(noisy, output);
     let weights = error.index.weights(0);
+    let bands = line_variances(vibration.lines(output, true), error)?;
     let (times, starts) = set_starts(error, noisy.period_ticks());
     let of_set = |start: u64| {
         let places: Vec<_> = times.places(start, error.index.reach(), noisy.period_ticks()).collect();
-        if is_uniform {
+        let mut variances = if is_uniform {
             samples.variances_about_mean(&places)
         } else {
             vec![samples.variance(&places, &weights)]
-        }
+        };
+        variances.iter_mut().zip(&bands).for_each(|(variance, more)| *variance += more);
+        variances
     };
     Some(starts.into_iter().flat_map(of_set).collect())
+}
+
+/// Returns the variance of an index at each of its places under lines whose phases are unrelated to its samples; `None` for a window
+/// with too many of them.
+pub(super) fn line_variances<'a>(
+    lines: impl Iterator<Item = &'a SpectralLine> + Clone,
+    error: &SampledError,
+) -> Option<Vec<f64>> {
+    let (index, step) = (error.index, error.period.seconds());
+    if index.reach() as f64 * lines.clone().count() as f64 > MOST_NUMBERS {
+        return None;
+    }
+    let weights = index.weights(0);
+    let mut sums = vec![0.0; index.places() as usize];
+    for line in lines {
+        let turn = |place: usize| unit_circle(line.frequency_rad_s * step * place as f64);
+        let power = line.mean_square();
+        if sums.len() == 1 {
+            let sum: Complex<f64> =
+                weights.iter().enumerate().map(|(place, weight)| turn(place) * *weight).sum();
+            sums[0] += power * sum.norm_sqr();
+        } else {
+            let all: Vec<Complex<f64>> = (0..sums.len()).map(turn).collect();
+            let mean = all.iter().sum::<Complex<f64>>() / all.len() as f64;
+            sums.iter_mut().zip(all).for_each(|(sum, value)| *sum += power * (value - mean).norm_sqr());
+        }
+    }
+    Some(sums)
 }

@@ -8,7 +8,9 @@ use flexsc_spacecraft::axes::Axis;
 use flexsc_spacecraft::disturbance::Disturbance;
 use nalgebra::Complex;
 
-use super::linear_noise::{index_variances, output_names, set_starts};
+use super::linear_noise::{
+    index_variances, index_vibration, line_variances, linear_noise, output_names, set_starts,
+};
 use super::{ErrorSources, SourceCombination};
 use crate::margins::frequency_response::{modulus, unit_circle};
 use crate::noise::{LineLoop, NoisyLoop, TurningMotion};
@@ -33,6 +35,8 @@ struct DisturbedIndex<'a> {
     output: usize,
     /// Variance under the noise at each place of each set of samples.
     variances: Vec<f64>,
+    /// Amplitudes of the index at each place of a set under each line of machines.
+    tones: Vec<Vec<f64>>,
     /// Index at each place under a torque cos w t of 1 N m, by the frequency w and the axis.
     responses: BTreeMap<(u64, usize), Vec<Complex<f64>>>,
 }
@@ -44,6 +48,11 @@ impl<'a> DisturbedLoop<'a> {
         Some(Self { noisy, lines: LineLoop::from_scenario(scenario).ok()? })
     }
 
+    /// Returns the rms of the index of an error under the noise of the loop: see [`linear_noise`].
+    pub fn noise(&self, error: &SampledError) -> Option<f64> {
+        linear_noise(&self.noisy, &self.lines, error)
+    }
+
     /// Returns the loop under its noise.
     pub fn noisy(&self) -> &NoisyLoop {
         &self.noisy
@@ -53,15 +62,22 @@ impl<'a> DisturbedLoop<'a> {
         let names = output_names(error);
         let outputs: Vec<usize> = names.iter().filter_map(|name| self.noisy.output(name)).collect();
         let &[output] = &outputs[..] else { return None };
-        let variances = index_variances(&self.noisy, output, error)?;
-        Some(DisturbedIndex { within: self, error, output, variances, responses: BTreeMap::new() })
+        let vibration = index_vibration(&self.lines, &[output], error)?;
+        let variances = index_variances((&self.noisy, &vibration), output, error)?;
+        let tone = |line| {
+            let variances = line_variances(std::iter::once(line), error)?;
+            Some(variances.iter().map(|variance| f64::sqrt(2.0 * variance)).collect())
+        };
+        let tones = vibration.lines(output, false).map(tone).collect::<Option<_>>()?;
+        Some(DisturbedIndex { within: self, error, output, variances, tones, responses: BTreeMap::new() })
     }
 }
 
 /// Returns the sources of the indices of some components of errors about the target at rest: the bias under the steady
 /// torques of all disturbances together, the amplitude under each of their sines and under the periodic torque of the body,
 /// and the rms of the noise. `points` are the equally likely scenarios of an ensemble, whose loop is that of the `nominal`
-/// one if they share it. `None` for an index that the loop of a point does not have. Pulses, forces and the imbalance of wheels are left out.
+/// one if they share it. `None` for an index that the loop of a point does not have. Pulses, steady forces and the imbalance of wheels
+/// are left out; machines with lines are at their worst frequency for the index.
 pub fn linear_sources(
     nominal: &DisturbedLoop<'_>,
     points: &[Scenario],
@@ -138,7 +154,11 @@ impl DisturbedIndex<'_> {
         let combination = |(place, variance): (usize, &f64)| SourceCombination {
             weight: 1.0,
             bias: bias[place].re,
-            amplitudes: sines.iter().map(|sine| modulus(sine[place])).collect(),
+            amplitudes: sines
+                .iter()
+                .map(|sine| modulus(sine[place]))
+                .chain(self.tones.iter().map(|tone| tone[place % tone.len()]))
+                .collect(),
             noise: f64::sqrt(*variance),
         };
         Some(self.variances.iter().enumerate().map(combination).collect())

@@ -9,6 +9,8 @@
 use std::f64::consts::PI;
 
 use flexsc_numerics::quadrature::nodes;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::noisy_loop::NoisyLoop;
 use super::spectral_line::SpectralLine;
@@ -18,6 +20,8 @@ use super::windows::{Functional, j0};
 const HARMONICS: f64 = 4.0;
 /// Most radians of the fastest harmonic in an exposure: faster motion has hardly any mean, and its amplitude is even.
 const MOST_TURN: f64 = 600.0;
+/// Part of the power of broadband motion that may be above the fastest motion.
+const VANISHING: f64 = 1e-6;
 
 /// Blur of an image by Gaussian noise over the time of an exposure.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +30,8 @@ pub struct ImageBlur {
     exposure: Option<f64>,
     /// Times from the middle of the exposure (s), their parts of it, and variances about the mean (rad²).
     instants: Vec<BlurInstant>,
+    /// Lines that always move the image.
+    lines: Vec<SpectralLine>,
 }
 
 /// Variance of the noise at one time of an exposure.
@@ -37,33 +43,40 @@ struct BlurInstant {
 }
 
 impl ImageBlur {
-    /// Returns the blur by an output of a loop during exposures that begin at samples of the law, for lines up to a frequency
-    /// (rad/s).
+    /// Returns the blur by an output of a loop during exposures that begin at samples of the law, and by Gaussian motion that is given
+    /// as lines, for other lines up to a frequency (rad/s).
     ///
     /// # Errors
     /// See [`NoisyLoop::window_variances`].
     pub fn new(
         noisy: &NoisyLoop,
         output: usize,
-        exposure: Option<f64>,
-        fastest: f64,
+        (exposure, fastest): (Option<f64>, f64),
+        gaussian: &[SpectralLine],
     ) -> Result<Self, String> {
         let Some(length) = exposure else {
-            return Ok(Self::long(noisy.mean_variances(&[output])[0].iter().sum()));
+            let bands: f64 = gaussian.iter().map(SpectralLine::mean_square).sum();
+            return Ok(Self::long(noisy.mean_variances(&[output])[0].iter().sum::<f64>() + bands));
         };
         noisy.check_time("window", length)?;
-        let fastest = noisy.frequencies.iter().copied().fold(fastest, f64::max);
+        let fastest = noisy.frequencies.iter().copied().fold(fastest, f64::max).max(upper_edge(gaussian));
         let moments = noisy.moments(output, [0.0, noisy.period]);
         let variance = |time: f64| {
             let about_mean = Functional::mean(0.0, length, -1.0).with_point(time + 0.5 * length);
-            noisy.functional_variances(output, &about_mean, &moments).iter().sum()
+            let bands =
+                gaussian.iter().map(|line| line.mean_square() * about_mean_square(line, length, time));
+            noisy.functional_variances(output, &about_mean, &moments).iter().sum::<f64>() + bands.sum::<f64>()
         };
         Ok(Self::over_exposure(length, fastest, variance))
     }
 
     /// Returns the blur of an exposure without end by a variance (rad²).
     pub fn long(variance: f64) -> Self {
-        Self { exposure: None, instants: vec![BlurInstant { time: 0.0, part: 1.0, variance }] }
+        Self {
+            exposure: None,
+            instants: vec![BlurInstant { time: 0.0, part: 1.0, variance }],
+            lines: Vec::new(),
+        }
     }
 
     /// Returns the blur of an exposure (s) by a variance (rad²) over the time from its middle, and by motion up to a frequency
@@ -74,7 +87,14 @@ impl ImageBlur {
             let time = from_start - 0.5 * length;
             BlurInstant { time, part: weight / length, variance: variance(time) }
         };
-        Self { exposure: Some(length), instants: nodes(length, rate).into_iter().map(instant).collect() }
+        let instants = nodes(length, rate).into_iter().map(instant).collect();
+        Self { exposure: Some(length), instants, lines: Vec::new() }
+    }
+
+    /// Returns the blur with lines that always move the image.
+    #[must_use]
+    pub fn with_lines(self, lines: Vec<SpectralLine>) -> Self {
+        Self { lines, ..self }
     }
 
     /// Returns the contrast at a spatial frequency (cycles/rad) of an image that also moves by lines (rad).
@@ -82,17 +102,66 @@ impl ImageBlur {
         let turn = 2.0 * PI * frequency;
         let contrast_at = |instant: &BlurInstant| {
             let of_line = |line: &SpectralLine| {
-                let square = self.exposure.map_or(1.0, |length| {
-                    let mean = j0(0.5 * line.frequency_rad_s * length);
-                    1.0 - 2.0 * mean * libm::cos(line.frequency_rad_s * instant.time) + mean * mean
-                });
+                let square =
+                    self.exposure.map_or(1.0, |length| about_mean_square(line, length, instant.time));
                 libm::j0(turn * line.amplitude * square.max(0.0).sqrt())
             };
             let noise = libm::exp(-0.5 * turn * turn * instant.variance);
-            instant.part * noise * lines.iter().map(of_line).product::<f64>()
+            instant.part * noise * self.lines.iter().chain(lines).map(of_line).product::<f64>()
         };
         self.instants.iter().map(contrast_at).sum()
     }
+}
+
+/// Factors of an image's contrast at the Nyquist frequency of its pixels besides that of the motion in `mtf`.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(extend("x-dict" = true))]
+pub struct ImageFactors {
+    /// Spatial frequency (cycles/rad).
+    pub spatial_frequency: f64,
+    /// Contrast of the mean over a pixel.
+    pub detector: f64,
+    /// Contrast of a circular aperture without a central obscuration, if its diffraction is given.
+    pub diffraction: Option<f64>,
+    /// Contrast under a steady rate over the exposure, if one is given: negative where light and dark have changed places.
+    pub smear: Option<f64>,
+    /// Product of these.
+    pub product: f64,
+}
+
+impl ImageFactors {
+    /// Returns the factors of pixels of an angle (rad), of an aperture with this wavelength over its diameter (rad), and of an angle by
+    /// which the image moves during an exposure (rad).
+    pub fn new(pixel: f64, diffraction: Option<f64>, smear: Option<f64>) -> Self {
+        let spatial_frequency = 0.5 / pixel;
+        let mean_over = |angle: f64| j0(PI * spatial_frequency * angle);
+        let aperture = |angle: f64| {
+            let x = spatial_frequency * angle;
+            if x < 1.0 { 2.0 / PI * (libm::acos(x) - x * f64::sqrt(1.0 - x * x)) } else { 0.0 }
+        };
+        let (detector, diffraction, smear) =
+            (mean_over(pixel), diffraction.map(aperture), smear.map(mean_over));
+        let product = detector * diffraction.unwrap_or(1.0) * smear.unwrap_or(1.0);
+        Self { spatial_frequency, detector, diffraction, smear, product }
+    }
+}
+
+/// Returns the square by which the amplitude of a sine about its mean over an exposure (s) exceeds its own, at a time from the middle.
+fn about_mean_square(line: &SpectralLine, length: f64, time: f64) -> f64 {
+    let mean = j0(0.5 * line.frequency_rad_s * length);
+    1.0 - 2.0 * mean * libm::cos(line.frequency_rad_s * time) + mean * mean
+}
+
+/// Returns the frequency (rad/s) up to which lines have all but a vanishing part of their power.
+fn upper_edge(lines: &[SpectralLine]) -> f64 {
+    let mut left: f64 = VANISHING * lines.iter().map(SpectralLine::mean_square).sum::<f64>();
+    let mut sorted: Vec<&SpectralLine> = lines.iter().collect();
+    sorted.sort_by(|a, b| b.frequency_rad_s.total_cmp(&a.frequency_rad_s));
+    let edge = sorted.into_iter().find(|line| {
+        left -= line.mean_square();
+        left < 0.0
+    });
+    edge.map_or(0.0, |line| line.frequency_rad_s)
 }
 
 #[cfg(test)]
@@ -158,5 +227,17 @@ mod tests {
         close(blur.contrast(FREQUENCY, &[line(37.0)]), 0.959_708_713_158_169_7, 1e-14);
         let long = ImageBlur::long(0.09e-12);
         close(long.contrast(FREQUENCY, &[line(37.0)]), 0.574_989_735_754_48, 1e-13);
+    }
+
+    /// Numbers by mpmath: sinc(1/2), the overlap of two circles half a diameter apart, and sinc(1.5), which is negative.
+    #[test]
+    fn detector_aperture_and_smear_have_factors() {
+        let factors = ImageFactors::new(2e-6, Some(2e-6), Some(6e-6));
+        assert_eq!(factors.spatial_frequency, FREQUENCY);
+        close(factors.detector, 0.636_619_772_367_581_3, 1e-15);
+        close(factors.diffraction.expect("given"), 0.391_002_218_955_771_8, 1e-15);
+        close(factors.smear.expect("given"), -0.212_206_590_789_193_8, 1e-15);
+        close(factors.product, -0.052_822_410_175_172_27, 1e-15);
+        assert_eq!(ImageFactors::new(1e-6, Some(3e-6), None).product, 0.0);
     }
 }

@@ -20,10 +20,10 @@ use crate::open_loop::attitude_rows::seconds;
 use crate::open_loop::{LoopParts, TransferMatrices};
 
 /// Turns over a period below which the frequency of a line is next to 0.
-const SLOW: f64 = 1e-4;
+const SLOW: f64 = 3e-6;
 
 /// Complex amplitudes: a row for each output, axis or state, and a column for each load.
-type Amplitudes = DMatrix<Complex<f64>>;
+pub type Amplitudes = DMatrix<Complex<f64>>;
 
 /// Solver of a loop.
 pub struct LineSolver {
@@ -36,6 +36,16 @@ pub struct LineSolver {
 pub struct LineFrequencies {
     pub frequencies: Vec<f64>,
     pub period: f64,
+}
+
+/// Motion of a loop over a period under loads of one frequency, each alone.
+pub struct LoadedMotion {
+    /// Motion of the body under the loads alone.
+    alone: ForcedMotion,
+    /// Difference that the law makes to the states at the start of a period.
+    change: Amplitudes,
+    /// Pieces of the period from the states under the loads alone.
+    pieces: Vec<Piece>,
 }
 
 impl LineSolver {
@@ -60,55 +70,61 @@ impl LineSolver {
         LineFrequencies { frequencies, period }
     }
 
-    /// Returns the amplitudes of outputs at each frequency under each load alone; NaN next to the frequency 0.
+    /// Solves for the motion under loads of the frequency of the last of some lines, each alone.
     ///
     /// # Errors
     /// A motion without damping at the frequency of the load.
-    pub fn amplitudes(
+    pub fn solve(
         &self,
         parts: &LoopParts<'_>,
         loads: &[SineLoad],
-        (rows, outputs): (&[OutputRow], &[usize]),
         turns: &LineFrequencies,
-    ) -> Result<Vec<Amplitudes>, ConfigError> {
+    ) -> Result<LoadedMotion, ConfigError> {
         let frequency = turns.load();
         let undamped = || undamped(frequency);
         let entry = |row: usize, load: usize| Complex::new(loads[load].cosine[row], -loads[load].sine[row]);
         let forcing = DMatrix::from_fn(parts.body.a.nrows(), loads.len(), entry);
         let amplitudes = self.body.states(Complex::new(0.0, frequency), &forcing).ok_or_else(undamped)?;
-        let motion = ForcedMotion { amplitudes, frequency };
-        let (end, pieces) = self.period_rows.forced(parts, &motion)?;
+        let alone = ForcedMotion { amplitudes, frequency };
+        let (end, pieces) = self.period_rows.forced(parts, &alone)?;
         let turn = unit_circle(frequency * turns.period);
         let mut change = joined(&end);
         for (place, state) in self.period_rows.kept.iter().enumerate() {
-            if *state < motion.amplitudes.nrows() {
-                let start = motion.amplitudes.row(*state) * turn;
+            if *state < alone.amplitudes.nrows() {
+                let start = alone.amplitudes.row(*state) * turn;
                 let mut row = change.row_mut(place);
                 row -= start;
             }
         }
         let change = self.loop_over_period.states(turn, &change).ok_or_else(undamped)?;
-        let part = |of: fn(&Piece) -> &DMatrix<f64>| -> Vec<Amplitudes> {
-            let both = self.period_rows.pieces.iter().zip(&pieces);
-            both.map(|(own, forced)| of(own).map(Complex::from) * &change + joined(of(forced))).collect()
-        };
-        let torques = part(|piece| &piece.torque);
+        Ok(LoadedMotion { alone, change, pieces })
+    }
+
+    /// Returns the amplitudes of outputs at each frequency under each load alone; NaN next to the frequency 0.
+    pub fn amplitudes(
+        &self,
+        parts: &LoopParts<'_>,
+        motion: &LoadedMotion,
+        (rows, outputs): (&[OutputRow], &[usize]),
+        turns: &LineFrequencies,
+    ) -> Vec<Amplitudes> {
+        let torques = self.of_each(motion, |piece| &piece.torque);
         let has_commands = outputs.iter().any(|output| matches!(rows[*output], OutputRow::Command(_)));
-        let commands = if has_commands { part(|piece| &piece.command) } else { Vec::new() };
+        let commands = if has_commands { self.of_each(motion, |piece| &piece.command) } else { Vec::new() };
         let mut found = Vec::with_capacity(turns.frequencies.len());
         for (place, own) in turns.frequencies.iter().enumerate() {
-            let torque = turns.of_pieces(&pieces, &torques, *own);
+            let torque = turns.of_pieces(&motion.pieces, &torques, *own);
             let body = if (own * turns.period).abs() < TAU * SLOW {
                 None
             } else {
                 self.body.states(Complex::new(0.0, *own), &(parts.body.b.map(Complex::from) * torque))
             };
             let body = match body {
-                Some(body) if place + 1 == turns.frequencies.len() => Some(body + &motion.amplitudes),
+                Some(body) if place + 1 == turns.frequencies.len() => Some(body + &motion.alone.amplitudes),
                 body => body,
             };
             let commanded = if has_commands {
-                turns.of_pieces(&pieces, &commands, *own)
+                turns.of_pieces(&motion.pieces, &commands, *own)
             } else {
                 Amplitudes::zeros(0, 0)
             };
@@ -119,9 +135,38 @@ impl LineSolver {
                     row.iter().zip(&body.column(load)).map(|(entry, state)| state * *entry).sum()
                 }),
             };
-            found.push(DMatrix::from_fn(outputs.len(), loads.len(), amplitude));
+            found.push(DMatrix::from_fn(outputs.len(), motion.change.ncols(), amplitude));
         }
-        Ok(found)
+        found
+    }
+
+    /// Returns the mean square modulus of outputs at the samples of the law, under each load alone.
+    pub fn sample_squares(
+        &self,
+        motion: &LoadedMotion,
+        (rows, outputs): (&[OutputRow], &[usize]),
+    ) -> DMatrix<f64> {
+        let bodies = self.of_each(motion, |piece| &piece.body);
+        let commands = self.of_each(motion, |piece| &piece.command);
+        let is_sample = |place: &usize| motion.pieces[*place].from % self.period_rows.step == 0;
+        let sampled: Vec<usize> = (0..motion.pieces.len()).filter(is_sample).collect();
+        let square = |output: usize, load: usize| {
+            let at = |place: &usize| match &rows[outputs[output]] {
+                OutputRow::Command(axis) => commands[*place][(*axis, load)].norm_sqr(),
+                OutputRow::Body(row) => {
+                    let states = bodies[*place].column(load);
+                    row.iter().zip(&states).map(|(c, x)| x * *c).sum::<Complex<f64>>().norm_sqr()
+                }
+            };
+            sampled.iter().map(at).sum::<f64>() / sampled.len() as f64
+        };
+        DMatrix::from_fn(outputs.len(), motion.change.ncols(), square)
+    }
+
+    /// Returns what a piece has, for each piece of a motion.
+    fn of_each(&self, motion: &LoadedMotion, of: fn(&Piece) -> &DMatrix<f64>) -> Vec<Amplitudes> {
+        let both = self.period_rows.pieces.iter().zip(&motion.pieces);
+        both.map(|(own, forced)| of(own).map(Complex::from) * &motion.change + joined(of(forced))).collect()
     }
 }
 
@@ -143,42 +188,24 @@ impl LineFrequencies {
         self.frequencies.last().copied().unwrap_or_default()
     }
 
-    /// Returns the lines whose complex amplitudes a function gives for each frequency.
-    ///
-    /// # Errors
-    /// Errors of the function.
-    pub fn lines(
-        &self,
-        amplitude: impl FnMut(usize) -> Result<Complex<f64>, ConfigError>,
-    ) -> Result<OutputLines, ConfigError> {
-        let amplitudes = (0..self.frequencies.len()).map(amplitude).collect::<Result<Vec<_>, _>>()?;
-        let line = |(frequency, value): (&f64, Complex<f64>)| SpectralLine {
-            frequency_rad_s: frequency.abs(),
-            amplitude: modulus(value),
-        };
-        let mut all: Vec<SpectralLine> = self.frequencies.iter().zip(amplitudes).map(line).collect();
-        let direct = all.pop().unwrap_or_default();
-        all.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
-        Ok(OutputLines { direct, aliases: all })
-    }
-
     /// Returns the lines of an output behind a mirror, if it is behind one, whose complex amplitudes before the mirror a function
     /// gives for each frequency.
-    ///
-    /// # Errors
-    /// Errors of the function.
     pub fn lines_behind(
         &self,
         mirror: Option<&MirrorOutput>,
-        mut amplitude: impl FnMut(usize) -> Result<Complex<f64>, ConfigError>,
-    ) -> Result<OutputLines, ConfigError> {
-        let Some(mirror) = mirror else { return self.lines(amplitude) };
+        amplitude: impl Fn(usize) -> Complex<f64>,
+    ) -> OutputLines {
+        let line = |(frequency, value): (f64, Complex<f64>)| SpectralLine {
+            frequency_rad_s: frequency.abs(),
+            amplitude: modulus(value),
+        };
         let each = self.frequencies.iter().enumerate();
-        let before = each
-            .map(|(place, frequency)| Ok((*frequency, amplitude(place)?)))
-            .collect::<Result<Vec<_>, ConfigError>>()?;
-        let (frequencies, amplitudes): (Vec<f64>, Vec<_>) = mirror.lines(&before).into_iter().unzip();
-        Self { frequencies, period: self.period }.lines(|place| Ok(amplitudes[place]))
+        let before: Vec<_> = each.map(|(place, frequency)| (*frequency, amplitude(place))).collect();
+        let behind = mirror.map_or_else(|| before.clone(), |mirror| mirror.lines(&before));
+        let mut all: Vec<SpectralLine> = behind.into_iter().map(line).collect();
+        let direct = all.pop().unwrap_or_default();
+        all.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
+        OutputLines { direct, aliases: all }
     }
 
     /// Returns the amplitudes at a frequency of values that are constant in each piece.

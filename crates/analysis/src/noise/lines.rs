@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use flexsc_formats::document::ConfigError;
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::line_solver::{LineFrequencies, LineSolver, undamped};
+use super::line_solver::{Amplitudes, LineFrequencies, LineSolver, LoadedMotion, undamped};
 use super::mirror_states::{MirrorOutput, with_mirrors};
 use super::motion::{Motion, OutputRow};
 use super::output::{output_index, outputs};
@@ -21,6 +21,14 @@ use crate::margins::frequency_response::unit_circle;
 use crate::open_loop::attitude_rows::seconds;
 use crate::open_loop::{LoopBreak, LoopParts};
 use flexsc_scenario::Scenario;
+
+/// Lines of some outputs before mirrors under loads of one frequency, each alone.
+pub(super) struct SolvedLines {
+    pub turns: LineFrequencies,
+    motion: LoadedMotion,
+    /// Complex amplitudes at each frequency: a row for each output, and a column for each load.
+    pub amplitudes: Vec<Amplitudes>,
+}
 
 /// Closed loop to which loads that turn are applied.
 pub struct LineLoop<'a> {
@@ -39,7 +47,7 @@ impl<'a> LineLoop<'a> {
     /// # Errors
     /// A part that is not linear: its key, and the reason.
     pub fn from_scenario(scenario: &'a Scenario) -> Result<Self, ConfigError> {
-        Self::new(LoopParts::from_scenario(scenario, LoopBreak::Command)?)
+        Self::from_parts(LoopParts::from_scenario(scenario, LoopBreak::Command)?)
     }
 
     /// Returns the same loop with the wheels that points of the structure carry at a speed (rad/s); `None` if there are none, so that
@@ -48,10 +56,14 @@ impl<'a> LineLoop<'a> {
     /// # Errors
     /// See [`Self::from_scenario`].
     pub fn at_wheel_speed(&self, speed: f64) -> Result<Option<Self>, ConfigError> {
-        self.parts.at_wheel_speed(speed)?.map(Self::new).transpose()
+        self.parts.at_wheel_speed(speed)?.map(Self::from_parts).transpose()
     }
 
-    fn new(parts: LoopParts<'a>) -> Result<Self, ConfigError> {
+    /// Returns the closed loop of these parts, which are cut open at the command.
+    ///
+    /// # Errors
+    /// Periods of the loop without a common multiple that is short enough.
+    pub(crate) fn from_parts(parts: LoopParts<'a>) -> Result<Self, ConfigError> {
         let (signals, rows) = outputs(&parts);
         let mirrors = MirrorOutput::all(parts.scenario, &signals);
         Ok(Self { solver: LineSolver::new(&parts)?, parts, signals, rows, mirrors })
@@ -93,22 +105,53 @@ impl<'a> LineLoop<'a> {
         loads: &[SineLoad],
         outputs: &[usize],
     ) -> Result<Vec<Vec<OutputLines>>, ConfigError> {
-        let turns = self.solver.turns(frequency);
-        let amplitudes = self.solver.amplitudes(&self.parts, loads, (&self.rows, outputs), &turns)?;
+        let SolvedLines { turns, amplitudes, .. } = self.solved(frequency, loads, outputs)?;
         let of_load = |load: usize| {
             let lines = outputs.iter().enumerate();
             lines
                 .map(|(place, output)| {
-                    let amplitude = |turn: usize| match amplitudes[turn].get((place, load)) {
-                        Some(amplitude) if amplitude.re.is_finite() => Ok(*amplitude),
-                        // Next to the frequency 0, at which the body is rigid, by the motion itself.
-                        _ => self.slow_line(&loads[load], *output, (&turns, turn)),
-                    };
+                    let amplitude = |turn: usize| amplitudes[turn][(place, load)];
                     turns.lines_behind(self.mirrors[*output].as_ref(), amplitude)
                 })
                 .collect()
         };
-        (0..loads.len()).map(of_load).collect()
+        Ok((0..loads.len()).map(of_load).collect())
+    }
+
+    /// Solves for the lines of some outputs before mirrors under each load alone, all of one frequency (rad/s).
+    ///
+    /// # Errors
+    /// See [`Self::lines`].
+    pub(super) fn solved(
+        &self,
+        frequency: f64,
+        loads: &[SineLoad],
+        outputs: &[usize],
+    ) -> Result<SolvedLines, ConfigError> {
+        let turns = self.solver.turns(frequency);
+        let motion = self.solver.solve(&self.parts, loads, &turns)?;
+        let mut amplitudes = self.solver.amplitudes(&self.parts, &motion, (&self.rows, outputs), &turns);
+        for (turn, own) in amplitudes.iter_mut().enumerate() {
+            for (place, output) in outputs.iter().enumerate() {
+                for (load, column) in loads.iter().enumerate() {
+                    // Next to the frequency 0, at which the body is rigid, by the motion itself.
+                    if own[(place, load)].re.is_nan() {
+                        own[(place, load)] = self.slow_line(column, *output, (&turns, turn))?;
+                    }
+                }
+            }
+        }
+        Ok(SolvedLines { turns, motion, amplitudes })
+    }
+
+    /// Returns the mean square modulus of outputs before mirrors at the samples of the law, under each load alone.
+    pub(super) fn sample_squares(&self, solved: &SolvedLines, outputs: &[usize]) -> DMatrix<f64> {
+        self.solver.sample_squares(&solved.motion, (&self.rows, outputs))
+    }
+
+    /// Returns the mirror behind which an output is, if it is behind one.
+    pub(super) fn mirror(&self, output: usize) -> Option<&MirrorOutput> {
+        self.mirrors[output].as_ref()
     }
 
     /// Returns the amplitude of an output at a frequency, before a mirror, as the integral over the motion.

@@ -12,9 +12,13 @@
 //! - pointing indices over windows in continuous time: [`NoisyLoop::window_variances`], and [`WindowWeights`] for sines and densities;
 //! - the contrast of an image that moves with an output, over an exposure: [`ImageBlur`].
 //!
+//! [`Vibration`] has the motion under machines at points of the body: broadband loads as lines of small bands over frequency, and
+//! lines at the worst frequency of a machine.
+//!
 //! [`LineLoop`] has the lines of the loop under loads that turn, [`WheelImbalance`] those of wheels over their speed.
 //! [`NoiseReport`] has all of them for some outputs.
 
+mod broadband;
 mod covariance;
 mod density;
 mod image_contrast;
@@ -31,22 +35,28 @@ mod report;
 mod sample_times;
 mod schedule;
 mod source;
+mod source_motion;
 mod spectral_line;
 mod speed_grid;
+mod tones;
+mod transfer;
+mod vibration;
 mod welch;
 mod window_rms;
 mod windows;
 mod worst_speed;
 
 pub use density::{OutputDensity, cumulative_rms};
-pub use image_contrast::ImageBlur;
+pub use image_contrast::{ImageBlur, ImageFactors};
 pub use imbalance::{WheelImbalance, WheelLines, WheelSpectrum};
 pub use lines::{LineLoop, TurningMotion};
 pub use noisy_loop::{NoiseError, NoisyLoop};
 pub use output_samples::OutputSamples;
-pub use report::{NoiseReport, NoiseRequest, OutputNoise};
+pub use report::{MachineLines, NoiseReport, NoiseRequest, OutputNoise};
 pub use sample_times::{SamplePlace, SampleSets, SampleTimes};
+pub use source_motion::{SourceMotion, WorstTone};
 pub use spectral_line::{OutputLines, SineLoad, SpectralLine};
+pub use vibration::Vibration;
 pub use welch::NarrowestPeak;
 pub use window_rms::WindowRms;
 pub use windows::{Window, WindowVariances, WindowWeights};

@@ -1,5 +1,8 @@
 //! Noise of the outputs of a loop in numbers: rms by source, densities, and indices over windows.
 
+use std::f64::consts::TAU;
+
+use flexsc_control::law::LawKind;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::reader_units::ReaderUnits;
 use schemars::JsonSchema;
@@ -7,11 +10,14 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::density::cumulative_rms;
-use super::image_contrast::ImageBlur;
+use super::image_contrast::{ImageBlur, ImageFactors};
 use super::imbalance::{WheelImbalance, WheelSpectrum};
 use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, NoisyLoop};
 use super::output::output_index;
+use super::source_motion::SourceMotion;
+use super::spectral_line::SpectralLine;
+use super::vibration::Vibration;
 use super::window_rms::WindowRms;
 use super::windows::Window;
 use crate::fine_mirror::MirrorSensitivity;
@@ -33,8 +39,28 @@ pub struct NoiseRequest {
     /// Angle of a pixel (rad), at whose Nyquist frequency the contrast of the image is wanted: over an exposure as long as the
     /// window, or without a window over one without end.
     pub pixel: Option<f64>,
+    /// Steady rate of the image (rad/s) during an exposure as long as the window, for the factor of its smear.
+    pub smear: Option<f64>,
+    /// Wavelength over the diameter of a circular aperture (rad), for the factor of its diffraction.
+    pub diffraction: Option<f64>,
     /// Speeds of the wheels (rad/s) for the lines of their imbalance; none for steps up to their largest and the peaks between.
     pub speeds: Option<Vec<f64>>,
+}
+
+impl NoiseRequest {
+    /// Checks what is asked of an image.
+    fn check_image(&self) -> Result<(), &'static str> {
+        let is_angle = |value: f64| value.is_finite() && value >= 0.0;
+        match (self.smear, self.diffraction) {
+            (Some(_), _) if self.window.is_none() || self.pixel.is_none() => {
+                Err("smear needs a window, the exposure, and a pixel")
+            }
+            (_, Some(_)) if self.pixel.is_none() => Err("diffraction needs a pixel"),
+            (Some(rate), _) if !is_angle(rate) => Err("smear must be a rate from 0 on"),
+            (_, Some(angle)) if !is_angle(angle) => Err("diffraction must be an angle from 0 on"),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Noise of some outputs of a loop.
@@ -51,11 +77,14 @@ pub struct NoiseReport {
     pub nyquist_hz: f64,
     /// Sources of noise: keys of the scenario.
     pub sources: Vec<String>,
-    /// Frequencies of the densities (Hz), up to the Nyquist frequency.
+    /// Frequencies of the densities (Hz): up to the Nyquist frequency, and with broadband loads as far as these go.
     pub frequency_hz: Vec<f64>,
     /// Noise of each output.
     #[schemars(extend("x-key" = "output"))]
     pub outputs: Vec<OutputNoise>,
+    /// Further factors of the contrast, if a pixel is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub image: Option<ImageFactors>,
     /// Lines of the imbalance of the wheels, if they have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Json>", extend("x-type" = "WheelSpectrum | None"))]
@@ -79,7 +108,7 @@ pub struct OutputNoise {
     /// Rms over time from each source.
     #[schemars(extend("x-names" = "sources"))]
     pub rms_by_source: Vec<f64>,
-    /// One-sided power spectral density at the samples (unit² per Hz).
+    /// One-sided power spectral density (unit² per Hz): of noise at the samples, of broadband loads of the motion itself.
     pub density: Vec<f64>,
     /// Density from each source (unit² per Hz).
     #[schemars(extend("x-names" = "sources"))]
@@ -89,9 +118,27 @@ pub struct OutputNoise {
     /// Indices over windows, if a window is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<WindowRms>,
+    /// Lines of machines, each at its worst frequency for the output; none without such machines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-key" = "source"))]
+    pub machines: Option<Vec<MachineLines>>,
     /// Modulation transfer of the noise at the Nyquist frequency of the pixels, if a pixel is given and the output is an angle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mtf: Option<f64>,
+}
+
+/// Lines of a machine at its worst frequency for an output, in the unit of the output.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(extend("x-dict" = true))]
+pub struct MachineLines {
+    /// Key of the machine.
+    pub source: String,
+    /// Frequency of the machine in its tolerance at which the rms, within windows if there are any, is largest (rad/s).
+    pub frequency_rad_s: f64,
+    /// Rms of all lines.
+    pub rms: f64,
+    /// Largest deviation over time, without what sampling makes of the lines.
+    pub peak: f64,
 }
 
 impl NoiseReport {
@@ -101,30 +148,49 @@ impl NoiseReport {
     /// See [`NoisyLoop::from_scenario`]; a loop without noise, and a request for an output, a window or speeds that there
     /// are not.
     pub fn from_scenario(scenario: &Scenario, request: &NoiseRequest) -> Result<Self, NoiseError> {
+        request.check_image().map_err(|why| NoiseError::Request(why.to_owned()))?;
+        let is_open = matches!(scenario.law.about(0), LawKind::Open(_));
+        if is_open && scenario.disturbance.iter().any(|own| own.density.is_some()) {
+            let why = "leaves the body free, which answers a slow force with 1/f²: what a `density` does below its corner or its table decides \
+                       how far it drifts; give a law that holds the body";
+            return Err(NoiseError::Key(ConfigError::new("law.open", why)));
+        }
         let noisy = NoisyLoop::from_scenario(scenario)?;
         let outputs = chosen(&noisy, &request.signals)?;
+        let lines = LineLoop::from_scenario(scenario)?;
+        let vibration = Vibration::new(&lines, &outputs, &|_, lines| Self::measure(lines, request.window))?;
         let wheels = wheel_spectrum(scenario, request.speeds.clone(), &outputs)?;
         let wheels = match request.window {
             Some(window) => wheels.map(|wheels| wheels.over_windows(window)),
             None => wheels,
         };
-        if noisy.sources.is_empty() && wheels.is_none() {
+        if noisy.sources.is_empty() && vibration.sources.is_empty() && wheels.is_none() {
             let why =
                 "has no noise: neither sensors nor `disturbance` have any, and no wheels have `imbalance`";
             return Err(NoiseError::Key(ConfigError::new("sensor", why)));
         }
         let mut report = Self::new(&noisy, &outputs, request.window).map_err(NoiseError::Request)?;
         report.wheels = wheels;
+        if !vibration.sources.is_empty() {
+            report.add_vibration(&noisy, &outputs, &vibration);
+        }
         report.mirrors = MirrorSensitivity::all(scenario);
         if let Some(pixel) = request.pixel {
-            report.add_contrast(&noisy, &outputs, pixel).map_err(NoiseError::Request)?;
+            report.add_contrast(&noisy, (&outputs, &vibration), pixel).map_err(NoiseError::Request)?;
+            let smear = request.smear.zip(request.window).map(|(rate, window)| rate * window.length);
+            report.image = Some(ImageFactors::new(pixel, request.diffraction, smear));
         }
         Ok(report)
     }
 
     /// Adds the modulation transfer of the motion of an image at the Nyquist frequency of pixels of an angle (rad), during windows if
     /// there are any: of the noise, and of the noise and the lines of the wheels at each speed.
-    fn add_contrast(&mut self, noisy: &NoisyLoop, outputs: &[usize], pixel: f64) -> Result<(), String> {
+    fn add_contrast(
+        &mut self,
+        noisy: &NoisyLoop,
+        (outputs, vibration): (&[usize], &Vibration),
+        pixel: f64,
+    ) -> Result<(), String> {
         if !(LEAST_PIXEL..=MOST_PIXEL).contains(&pixel) {
             let [least, most, got] =
                 [LEAST_PIXEL, MOST_PIXEL, pixel].map(|angle| ReaderUnits::Engineering.quantity(angle, "rad"));
@@ -135,7 +201,11 @@ impl NoiseReport {
         let mut over_speed = Vec::new();
         for (place, own) in self.outputs.iter_mut().enumerate().filter(|(_, own)| own.unit == "rad") {
             let exposure = own.window.map(|window| window.window_s);
-            let blur = ImageBlur::new(noisy, outputs[place], exposure, fastest)?;
+            let [bands, tones] = [true, false].map(|is_gaussian| {
+                vibration.lines(outputs[place], is_gaussian).copied().collect::<Vec<SpectralLine>>()
+            });
+            let fastest = tones.iter().map(|line| line.frequency_rad_s).fold(fastest, f64::max);
+            let blur = ImageBlur::new(noisy, outputs[place], (exposure, fastest), &bands)?.with_lines(tones);
             own.mtf = Some(blur.contrast(nyquist, &[]));
             over_speed.push((place, blur));
         }
@@ -146,6 +216,68 @@ impl NoiseReport {
             wheels.add_contrast(nyquist, &over_speed);
         }
         Ok(())
+    }
+
+    /// Returns the measure of lines that is largest at the worst frequency of a machine: within windows if there are any.
+    fn measure(lines: &[SpectralLine], window: Option<Window>) -> f64 {
+        match window {
+            Some(window) => WindowRms::from_lines(lines.iter().copied(), window).rpe_uniform,
+            None => lines.iter().map(SpectralLine::mean_square).sum(),
+        }
+    }
+
+    /// Adds the motion of the outputs under machines.
+    fn add_vibration(&mut self, noisy: &NoisyLoop, outputs: &[usize], vibration: &Vibration) {
+        let sampled = self.frequency_hz.clone();
+        if !vibration.frequency_hz.is_empty() {
+            // The nodes of the integral follow the resonances as the grid of the noise does.
+            self.frequency_hz.clone_from(&vibration.frequency_hz);
+        }
+        let within = self.frequency_hz.partition_point(|frequency| *frequency <= self.nyquist_hz);
+        let densities = noisy.densities(outputs, &self.frequency_hz[..within]);
+        self.sources.extend(vibration.sources.iter().cloned());
+        for ((own, output), mut density) in self.outputs.iter_mut().zip(outputs).zip(densities) {
+            let sources = vibration.outputs.get(output).map_or(&[][..], |sources| sources);
+            let all_lines = || sources.iter().flat_map(|source| &source.lines);
+            let variance = |rms: f64, of: fn(&SourceMotion) -> f64| {
+                f64::sqrt(rms * rms + sources.iter().map(of).sum::<f64>())
+            };
+            own.rms = variance(own.rms, SourceMotion::variance);
+            own.sample_rms = variance(own.sample_rms, |source| source.sample_variance);
+            own.rms_by_source.extend(sources.iter().map(|source| source.variance().sqrt()));
+            own.window = own.window.map(|window| window.with_lines(all_lines().copied()));
+            let machine = |(source, motion): (&String, &SourceMotion)| {
+                let worst = motion.worst?;
+                Some(MachineLines {
+                    source: source.clone(),
+                    frequency_rad_s: worst.frequency,
+                    rms: motion.variance().sqrt(),
+                    peak: worst.peak,
+                })
+            };
+            let machines: Vec<MachineLines> =
+                vibration.sources.iter().zip(sources).filter_map(machine).collect();
+            own.machines = Some(machines).filter(|machines| !machines.is_empty());
+            let of_noise = |at: f64| {
+                let next = sampled.partition_point(|frequency| *frequency <= at);
+                next.checked_sub(1).map_or(0.0, |last| own.cumulative_rms[last] * own.cumulative_rms[last])
+            };
+            let mut lines: Vec<&SpectralLine> = all_lines().collect();
+            lines.sort_by(|a, b| a.frequency_rad_s.total_cmp(&b.frequency_rad_s));
+            let (mut lines, mut below) = (lines.into_iter().peekable(), 0.0);
+            let cumulative = self.frequency_hz.iter().map(|frequency| {
+                while let Some(line) = lines.next_if(|line| line.frequency_rad_s <= TAU * frequency) {
+                    below += line.mean_square();
+                }
+                f64::sqrt(of_noise(*frequency) + below)
+            });
+            own.cumulative_rms = cumulative.collect();
+            density.by_source.extend(sources.iter().map(|source| source.density.clone().unwrap_or_default()));
+            density.by_source.iter_mut().for_each(|list| list.resize(self.frequency_hz.len(), 0.0));
+            let at = |place: usize| density.by_source.iter().map(|list| list[place]).sum();
+            own.density = (0..self.frequency_hz.len()).map(at).collect();
+            own.density_by_source = density.by_source;
+        }
     }
 
     /// Computes the noise of some outputs, with their indices over windows if there is a window.
@@ -170,6 +302,7 @@ impl NoiseReport {
                 density: density.total,
                 density_by_source: density.by_source,
                 window: window.map(|window| WindowRms::new(noisy, outputs[place], window)).transpose()?,
+                machines: None,
                 mtf: None,
             });
         }
@@ -181,6 +314,7 @@ impl NoiseReport {
             sources: noisy.sources.clone(),
             frequency_hz,
             outputs: found,
+            image: None,
             wheels: None,
             mirrors: Vec::new(),
         })

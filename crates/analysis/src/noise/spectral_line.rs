@@ -21,6 +21,13 @@ pub struct SpectralLine {
     pub amplitude: f64,
 }
 
+impl SpectralLine {
+    /// Returns the mean square.
+    pub fn mean_square(&self) -> f64 {
+        0.5 * self.amplitude * self.amplitude
+    }
+}
+
 /// Lines of an output under a load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct OutputLines {
@@ -38,6 +45,6 @@ impl OutputLines {
 
     /// Returns the mean square of all lines.
     pub fn mean_square(&self) -> f64 {
-        self.all().map(|line| 0.5 * line.amplitude * line.amplitude).sum()
+        self.all().map(SpectralLine::mean_square).sum()
     }
 }

@@ -58,6 +58,22 @@ impl WindowRms {
         Ok(Self::from_variances(&noisy.window_variances(output, window)?, window))
     }
 
+    /// Returns the rms of this motion and independent lines together.
+    #[must_use]
+    pub fn with_lines(self, lines: impl Iterator<Item = SpectralLine>) -> Self {
+        let other = Self::from_lines(lines, Window { length: self.window_s, separation: self.separation_s });
+        Self {
+            mpe: libm::hypot(self.mpe, other.mpe),
+            rpe_uniform: libm::hypot(self.rpe_uniform, other.rpe_uniform),
+            rpe_end: libm::hypot(self.rpe_end, other.rpe_end),
+            rpe_middle: libm::hypot(self.rpe_middle, other.rpe_middle),
+            smear: libm::hypot(self.smear, other.smear),
+            beyond_smear: libm::hypot(self.beyond_smear, other.beyond_smear),
+            pde: self.pde.zip(other.pde).map(|(one, other)| libm::hypot(one, other)),
+            ..self
+        }
+    }
+
     /// Returns the rms over windows of several sources together.
     fn from_variances(each: &[WindowVariances], window: Window) -> Self {
         let rms = |value: fn(&WindowVariances) -> f64| f64::sqrt(each.iter().map(value).sum());

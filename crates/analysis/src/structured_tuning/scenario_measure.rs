@@ -5,7 +5,7 @@ use flexsc_formats::document::ConfigError;
 
 use super::goal::TunedMeasure;
 use crate::budget::{LEVELS, linear_noise, sigmas};
-use crate::noise::{NoiseError, NoisyLoop};
+use crate::noise::{LineLoop, NoiseError, NoisyLoop};
 use crate::open_loop::LoopParts;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Record, RecordError, RequirementRobustness, RobustnessOfRequirements, Sample};
@@ -121,7 +121,9 @@ impl ScenarioMeasure {
                     }
                     Err(fault) => return Err(format!("{name}: {fault}")),
                 };
-                let rms = linear_noise(&noisy, error).ok_or_else(|| {
+                let lines = LineLoop::from_parts(parts.clone())
+                    .map_err(|fault| format!("{name}: `{}` {}", fault.key, fault.why))?;
+                let rms = linear_noise(&noisy, &lines, error).ok_or_else(|| {
                     format!("{name}: the linear loop has no index of the requirement `{}`", own.name)
                 })?;
                 Ok(vec![rms])

@@ -9,8 +9,8 @@ use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use flexsc_core::analysis::budget::{
-    CampaignBudget, DisturbedLoop, ErrorSources, IndexBudget, IndexRun, PointingBudget, linear_noise,
-    linear_sources, noise_cycle, sine_frequencies,
+    CampaignBudget, DisturbedLoop, ErrorSources, IndexBudget, IndexRun, PointingBudget, linear_sources,
+    noise_cycle, sine_frequencies,
 };
 use flexsc_core::campaign::{Campaign, Design, RunOutcome};
 use flexsc_core::formats::count::counted;
@@ -219,7 +219,7 @@ impl CampaignSetup {
             let (is_signed, cycle) = (error.is_component(axes), noise_cycle(noisy, error));
             let sources = sources.next().flatten().filter(|_| is_signed);
             CampaignBudget {
-                linear_noise: noisy.and_then(|noisy| linear_noise(noisy, error)),
+                linear_noise: disturbed.as_ref().and_then(|disturbed| disturbed.noise(error)),
                 linear_levels: sources.as_ref().map(ErrorSources::mixed_levels),
                 linear_sources: sources,
                 ..CampaignBudget::new(requirement.clone(), error, &runs, is_signed, cycle)

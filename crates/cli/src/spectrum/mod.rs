@@ -13,7 +13,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use flexsc_core::analysis::noise::{
-    NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window, WindowRms,
+    MachineLines, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window, WindowRms,
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::time_span;
@@ -54,6 +54,12 @@ pub struct SpectrumArgs {
     /// --window, or without one over a long exposure
     #[arg(long, value_name = "ANGLE", value_parser = in_unit("rad"))]
     pixel: Option<f64>,
+    /// Steady rate of the image during the exposure --window (rad/s): prints the factor of its smear
+    #[arg(long, value_name = "RATE", requires = "pixel", requires = "window", value_parser = in_unit("rad/s"))]
+    smear: Option<f64>,
+    /// Wavelength over the diameter of a circular aperture (rad): prints the factor of its diffraction
+    #[arg(long, value_name = "ANGLE", requires = "pixel", value_parser = in_unit("rad"))]
+    diffraction: Option<f64>,
     /// Speeds of the wheels (rad/s) for the lines of their imbalance [default: 48 up to their largest, and the peaks between]
     #[arg(long, value_name = "LO:HI:COUNT", value_parser = grid_in("rad/s"))]
     speeds: Option<PositiveGrid>,
@@ -102,6 +108,8 @@ pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResul
         signals: args.signal.clone(),
         window: args.window.map(|length| Window { length, separation: args.separation }),
         pixel: args.pixel,
+        smear: args.smear,
+        diffraction: args.diffraction,
         speeds: args.speeds.clone().map(|PositiveGrid(speeds)| speeds),
     };
     let compared = match &args.log {
@@ -203,6 +211,15 @@ impl SpectrumResults {
     }
 }
 
+/// Columns of the lines of machines.
+const MACHINES: [Column<'_>; 5] = [
+    column("output", "output"),
+    column("source", "source"),
+    column("frequency_rad_s", "at"),
+    column("rms", "rms").unit_of_row(),
+    column("peak", "peak").unit_of_row(),
+];
+
 /// Columns of the contrast of an image that moves with an output.
 const CONTRAST: [Column<'_>; 4] = [
     column("output", "output"),
@@ -246,6 +263,34 @@ impl SpectrumResults {
         let columns =
             if rows.iter().any(|row| row["least"].is_number()) { &CONTRAST[..] } else { &CONTRAST[..2] };
         print_rows(&rows, columns, self.units);
+        if let Some(image) = &self.report.image {
+            let factors = [
+                ("detector", Some(image.detector)),
+                ("diffraction", image.diffraction),
+                ("smear", image.smear),
+            ];
+            let factor = |(name, value): (&str, Option<f64>)| Some(format!("{name} {:.4}", value?));
+            let factors: Vec<String> = factors.into_iter().filter_map(factor).collect();
+            say!("  times {}: together {:.4}", factors.join(", "), image.product);
+        }
+    }
+
+    /// Prints the lines of machines at their worst frequencies.
+    fn print_machines(&self) {
+        let of_output = |output: &OutputNoise| {
+            let mut name = output.output.as_str();
+            let row = |machine: &MachineLines| {
+                let mut row = json!(machine);
+                (row["output"], row["unit"]) = (json!(std::mem::take(&mut name)), json!(output.unit));
+                row
+            };
+            output.machines.iter().flatten().map(row).collect::<Vec<_>>()
+        };
+        let rows: Vec<Json> = self.report.outputs.iter().flat_map(of_output).collect();
+        if !rows.is_empty() {
+            say!("  lines of machines, each at its worst frequency for the output");
+            print_rows(&rows, &MACHINES, self.units);
+        }
     }
 
     /// Prints the estimates of a log beside the exact rms, with a warning where its bins are too wide for a peak.
@@ -344,6 +389,7 @@ impl Results for SpectrumResults {
             self.print_windows();
         }
         mirrors::print(&self.report.mirrors, self.units);
+        self.print_machines();
         self.print_contrast();
         self.print_welch();
         if let Some(wheels) = &self.report.wheels {

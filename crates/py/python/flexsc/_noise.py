@@ -119,6 +119,8 @@ def noise_spectrum(
     separation: float | None,
     speeds: npt.ArrayLike | None,
     pixel: float | None,
+    smear: float | None,
+    diffraction: float | None,
 ) -> NoiseSpectrum:
     """Return the noise of the loop of a scenario."""
     if separation is not None and window is None:
@@ -133,6 +135,8 @@ def noise_spectrum(
         window=window,
         separation=separation,
         pixel=pixel,
+        smear=smear,
+        diffraction=diffraction,
         speeds=given,
     )
     if "wheels" in found:

@@ -685,10 +685,12 @@ class Scenario:
         separation: float | None = None,
         speeds: npt.ArrayLike | None = None,
         pixel: float | None = None,
+        smear: float | None = None,
+        diffraction: float | None = None,
     ) -> NoiseSpectrum:
         """Return the noise of the scenario's loop, exact from its linear model: `flexsc spectrum`.
 
-        The noise is that of the sensors, of their rounding, and of random torques. Limits and steady
+        The noise is that of the sensors, of their rounding, of random torques and of machines. Limits and steady
         disturbances are left out; the body is about its target at rest. The lines of unbalanced wheels are
         over their speed, with the same indices over windows.
 
@@ -701,6 +703,8 @@ class Scenario:
                 largest.
             pixel: Angle (rad) of a pixel: `mtf` then has the contrast that the motion leaves an image at its
                 Nyquist frequency, over exposures of `window`, or without one over a long exposure.
+            smear: Steady rate (rad/s) of the image during exposures of `window`: its factor is in `image`.
+            diffraction: Wavelength over the diameter of a circular aperture (rad): its factor is in `image`.
 
         >>> spectrum = flexsc.Scenario.example("attitude-hold").spectrum(["roll", "command_roll"])
         >>> spectrum.sources
@@ -714,7 +718,7 @@ class Scenario:
         """
         from flexsc._noise import noise_spectrum
 
-        return noise_spectrum(self, signals, window, separation, speeds, pixel)
+        return noise_spectrum(self, signals, window, separation, speeds, pixel, smear, diffraction)
 
     def budget(self, runs: int = 20, jobs: int | None = None) -> PointingBudget:
         """Return the pointing budget of the scenario's `[[requirement]]` tables: `flexsc budget`.

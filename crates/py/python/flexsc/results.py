@@ -351,6 +351,13 @@ _WINDOW_RMS = attributes(
 )
 
 
+_MACHINE_LINES = attributes(
+    frequency=("frequency_rad_s", number),
+    rms=("rms", number),
+    peak=("peak", number),
+)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class OutputNoise(Data):
     """Noise of an output, in its unit.
@@ -376,7 +383,9 @@ class OutputNoise(Data):
     """Rms over time from each source."""
 
     density: Values = at("density", array)
-    """One-sided power spectral density at the samples (unit² per Hz)."""
+    """One-sided power spectral density (unit² per Hz): of noise at the samples, of broadband loads of the
+    motion itself.
+    """
 
     density_by_source: dict[str, Values] = at("density_by_source", named("sources", array))
     """Density from each source (unit² per Hz)."""
@@ -395,10 +404,22 @@ class OutputNoise(Data):
     reproducibility error; none without a separation.
     """
 
+    machines: dict[str, dict[str, float]] | None = at("machines", keyed("source", _MACHINE_LINES))
+    """Lines of machines, each at its worst frequency for the output; none without such machines."""
+
     mtf: float = at("mtf", number)
     """Modulation transfer of the noise at the Nyquist frequency of the pixels, if a pixel is given and the
     output is an angle. NaN if there is none.
     """
+
+
+_IMAGE_FACTORS = attributes(
+    spatial_frequency=("spatial_frequency", number),
+    detector=("detector", number),
+    diffraction=("diffraction", number),
+    smear=("smear", number),
+    product=("product", number),
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -466,10 +487,20 @@ class NoiseSpectrum(NoiseFigure, Data):
     """Sources of noise: keys of the scenario."""
 
     frequency_hz: Values = at("frequency_hz", array)
-    """Frequencies of the densities (Hz), up to the Nyquist frequency."""
+    """Frequencies of the densities (Hz): up to the Nyquist frequency, and with broadband loads as far as
+    these go.
+    """
 
     outputs: dict[str, OutputNoise] = at("outputs", keyed("output", one(OutputNoise)))
     """Noise of each output."""
+
+    image: dict[str, float] | None = at("image", _IMAGE_FACTORS)
+    """Further factors of the contrast, if a pixel is given. `spatial_frequency`: spatial frequency
+    (cycles/rad); `detector`: contrast of the mean over a pixel; `diffraction`: contrast of a circular
+    aperture without a central obscuration, if its diffraction is given; `smear`: contrast under a steady
+    rate over the exposure, if one is given: negative where light and dark have changed places;
+    `product`: product of these. None if there is none.
+    """
 
     wheels: WheelSpectrum | None = at("wheels", plain)
     """Lines of the imbalance of the wheels, if they have one. None if there is none."""

@@ -113,6 +113,9 @@ __all__ = [
     "Lead",
     "LineOfSight",
     "LitPlate",
+    "LoadDensity",
+    "LoadHarmonic",
+    "LoadLines",
     "LogContents",
     "LogUniform",
     "LowPass",
@@ -1193,7 +1196,7 @@ class Disturbance(Part):
             from the start of the run.
         force: Force in the body's axes (N) in place of a torque, on a body with three axes: a leak, a stuck
             jet, a push.
-        point: Name of the point at which the force acts; default: the first.
+        point: Name of the point at which the force, the density or the lines act; default: the first.
         noise: Spectral density of white noise added to the torque ((N m)² s); each draw is held for
             `period`. Default: 0.0.
         pulse: Pulses in place of a steady torque or force, each at the start of a period.
@@ -1201,6 +1204,9 @@ class Disturbance(Part):
         table: Torques (s, N m) or forces in the body's axes (s, N, N, N) over time, or the path of a .csv
             file, in place of constant ones; times are from the start of the run. Each is held until the
             next, the last until `to`.
+        density: Broadband force and torque at the point in place of a steady force, by their spectral
+            densities.
+        lines: Sinusoidal force and torque at the point in place of a steady force: the lines of a machine.
         from_: Start time (s). Default: 0.0.
         to: End time (s); default: the end of the run.
     """
@@ -1218,7 +1224,7 @@ class Disturbance(Part):
     push.
     """
     point: str = DEFAULT
-    """Name of the point at which the force acts; default: the first."""
+    """Name of the point at which the force, the density or the lines act; default: the first."""
     noise: float = DEFAULT
     """Spectral density of white noise added to the torque ((N m)² s); each draw is held for `period`.
     Default: 0.0.
@@ -1232,6 +1238,10 @@ class Disturbance(Part):
     place of constant ones; times are from the start of the run. Each is held until the next, the last
     until `to`.
     """
+    density: LoadDensity = DEFAULT
+    """Broadband force and torque at the point in place of a steady force, by their spectral densities."""
+    lines: LoadLines = DEFAULT
+    """Sinusoidal force and torque at the point in place of a steady force: the lines of a machine."""
     from_: float = DEFAULT
     """Start time (s). Default: 0.0."""
     to: float = DEFAULT
@@ -2381,6 +2391,86 @@ class LitPlate(Part):
     """The part of the light that it reflects like a mirror. Default: 0.0."""
     diffuse: float = DEFAULT
     """The part that it reflects diffusely. Default: 0.0."""
+
+
+class LoadDensity(Part):
+    """Stationary Gaussian force and torque at a point, whose components are independent: one-sided
+    densities that are constant between two corners, or a table over frequency. Below `lower` a density
+    falls with the fourth power of the frequency, above `upper` with its inverse: filters of the second
+    order with a damping ratio of 0.7. A table is linear between its rows on logarithmic scales, and zero
+    outside.
+
+    Args:
+        force: One-sided density of the force along x, y and z between the corners (N²/Hz).
+        torque: One-sided density of the torque about x, y and z between the corners ((N m)²/Hz).
+        lower: Lower corner (rad/s).
+        upper: Upper corner (rad/s).
+        table: Densities over frequency in place of the corners, or the path of a .csv file: frequency (Hz)
+            and density of the force (N²/Hz), the same along all axes or along x, y and z, which those of
+            the torque about x, y and z ((N m)²/Hz) may follow.
+    """
+
+    force: Vector = DEFAULT
+    """One-sided density of the force along x, y and z between the corners (N²/Hz)."""
+    torque: Vector = DEFAULT
+    """One-sided density of the torque about x, y and z between the corners ((N m)²/Hz)."""
+    lower: float = DEFAULT
+    """Lower corner (rad/s)."""
+    upper: float = DEFAULT
+    """Upper corner (rad/s)."""
+    table: Rows | str = DEFAULT
+    """Densities over frequency in place of the corners, or the path of a .csv file: frequency (Hz) and
+    density of the force (N²/Hz), the same along all axes or along x, y and z, which those of the torque
+    about x, y and z ((N m)²/Hz) may follow.
+    """
+
+
+class LoadHarmonic(Part):
+    """Harmonic of a machine: a force and a torque times cos(order steps frequency t + phase).
+
+    Args:
+        order: Order: periods per period of the machine, or per step of a motor; it need not be whole. Two
+            of one order with different phases make a load that turns.
+        force: Amplitude of the force along x, y and z (N).
+        torque: Amplitude of the torque about x, y and z (N m).
+        phase: Phase (rad). Default: 0.0.
+    """
+
+    order: float
+    """Order: periods per period of the machine, or per step of a motor; it need not be whole. Two of one
+    order with different phases make a load that turns.
+    """
+    force: Vector = DEFAULT
+    """Amplitude of the force along x, y and z (N)."""
+    torque: Vector = DEFAULT
+    """Amplitude of the torque about x, y and z (N m)."""
+    phase: float = DEFAULT
+    """Phase (rad). Default: 0.0."""
+
+
+class LoadLines(Part):
+    """Sinusoidal forces and torques at a point, at multiples of one frequency: a cooler, the step motor of
+    a drive, a bearing.
+
+    Args:
+        frequency: Frequency of the order 1 (rad/s): of the strokes of a cooler, or the speed of a drive or
+            a bearing.
+        harmonics: Harmonics, whose phases are fixed among them.
+        tolerance: Part of the frequency by which it may differ: linear tools take the worst frequency in
+            this range, each run draws one. Default: 0.0.
+        steps: Steps, or microsteps, of a motor in a turn, of which the orders are multiples. Default: 1.0.
+    """
+
+    frequency: float
+    """Frequency of the order 1 (rad/s): of the strokes of a cooler, or the speed of a drive or a bearing."""
+    harmonics: Sequence[LoadHarmonic]
+    """Harmonics, whose phases are fixed among them."""
+    tolerance: float = DEFAULT
+    """Part of the frequency by which it may differ: linear tools take the worst frequency in this range,
+    each run draws one. Default: 0.0.
+    """
+    steps: float = DEFAULT
+    """Steps, or microsteps, of a motor in a turn, of which the orders are multiples. Default: 1.0."""
 
 
 class LogContents(Part):

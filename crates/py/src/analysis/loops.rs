@@ -109,15 +109,17 @@ pub struct Spectrum {
     window: Option<f64>,
     separation: Option<f64>,
     pixel: Option<f64>,
+    smear: Option<f64>,
+    diffraction: Option<f64>,
     speeds: Option<Vec<f64>>,
 }
 
 impl Spectrum {
     pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer<NoiseReport>> {
         let scenario = on.scenario()?;
-        let Self { signals, window, separation, pixel, speeds } = self;
+        let Self { signals, window, separation, pixel, smear, diffraction, speeds } = self;
         let window = window.map(|length| Window { length, separation });
-        let request = NoiseRequest { signals, window, pixel, speeds };
+        let request = NoiseRequest { signals, window, pixel, smear, diffraction, speeds };
         let inner = scenario.inner.clone();
         let report = aside(on.py, move |_| NoiseReport::from_scenario(&inner, &request))?;
         let report = report.map_err(|fault| match fault {

@@ -1,0 +1,244 @@
+//! Broadband forces and torques on a loop: the motion of its outputs as many lines, each with the power of a small band.
+//!
+//! A source of the one-sided density S drives each output with S |H_n|² at the frequency of the load and at the aliases that sampling
+//! makes of it. Over frequency this is integrated by Kronrod's rule, between the knots of the densities and around the resonances of
+//! body and loop, halving intervals until nothing changes. The nodes are the lines: every index is a sum over them.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quadrature::kronrod;
+use flexsc_spacecraft::load_density::LoadDensity;
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::lines::LineLoop;
+use super::source_motion::SourceMotion;
+use super::spectral_line::SpectralLine;
+use super::transfer::{LoadResponse, LoopTransfer};
+
+/// Lowest frequency, relative to the lowest corner and resonance, and highest, relative to the highest.
+const LOWEST: f64 = 1e-3;
+const HIGHEST: f64 = 30.0;
+/// Ratio of the distances of breaks from a resonance, in half widths, and ratio of frequencies of breaks elsewhere.
+const GRADE: f64 = 5.0;
+const APART: f64 = 3.0;
+/// Ratio of frequencies within which breaks follow a resonance.
+const NEAR: f64 = 2.0;
+/// Difference of the two rules, relative to the whole, below which an interval counts: the finer one is then far closer.
+const DIFFERENCE: f64 = 1e-6;
+/// Largest number of halvings of an interval, and of intervals.
+const HALVINGS: usize = 12;
+const MOST_INTERVALS: usize = 4000;
+
+/// Broadband load at a point of the body.
+pub(super) struct BroadbandSource<'a> {
+    pub density: &'a LoadDensity,
+    /// Components of the load, each with its place in the density and the number of its column.
+    pub parts: Vec<(usize, usize)>,
+}
+
+/// Response at one node of the integral over frequency.
+struct Node {
+    frequency: f64,
+    weight: f64,
+    responses: Vec<LoadResponse>,
+}
+
+/// Interval of the integral over frequency (rad/s), and its nodes.
+struct Interval {
+    ends: [f64; 2],
+    nodes: Vec<Node>,
+    /// Of each output and source, the mean square, and its difference by the coarser rule.
+    powers: Vec<[f64; 2]>,
+}
+
+/// Returns the frequencies of the loads (Hz), and the motion of each output under each source.
+pub(super) fn broadband(
+    lines: &LineLoop<'_>,
+    outputs: &[usize],
+    loads: &[DVector<f64>],
+    sources: Vec<BroadbandSource<'_>>,
+) -> Result<(Vec<f64>, Vec<Vec<SourceMotion>>), ConfigError> {
+    if sources.is_empty() {
+        return Ok((Vec::new(), vec![Vec::new(); outputs.len()]));
+    }
+    let integral =
+        Integral { transfer: LoopTransfer::new(lines, outputs, loads)?, sources, outputs: outputs.len() };
+    let mut nodes: Vec<Node> =
+        integral.intervals()?.into_iter().flat_map(|interval| interval.nodes).collect();
+    nodes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    let motion = |output: usize, source: &BroadbandSource<'_>| {
+        let mut found = SourceMotion::default();
+        let mut densities = Vec::with_capacity(nodes.len());
+        for node in &nodes {
+            let own = integral.of_source(source, output, node.frequency, &node.responses);
+            densities.push(own.density);
+            found.sample_variance += node.weight * own.sampled;
+            for (frequency_rad_s, power) in own.lines {
+                let amplitude = f64::sqrt(2.0 * node.weight * power);
+                if amplitude > 0.0 {
+                    found.lines.push(SpectralLine { frequency_rad_s, amplitude });
+                }
+            }
+        }
+        SourceMotion { density: Some(densities), ..found }
+    };
+    let of_output = |output: usize| integral.sources.iter().map(|source| motion(output, source)).collect();
+    let motions = (0..outputs.len()).map(of_output).collect();
+    Ok((nodes.iter().map(|node| node.frequency / TAU).collect(), motions))
+}
+
+/// Motion of an output under one source at one frequency, per Hz.
+struct SourcePower {
+    /// Frequencies (rad/s) and powers.
+    lines: Vec<(f64, f64)>,
+    /// Power at the frequency of the load.
+    density: f64,
+    /// Power at the samples of the law.
+    sampled: f64,
+}
+
+/// Integral over the frequency of the loads.
+struct Integral<'a> {
+    transfer: LoopTransfer<'a>,
+    sources: Vec<BroadbandSource<'a>>,
+    outputs: usize,
+}
+
+impl Integral<'_> {
+    /// Returns the motion of an output under a source from the responses at a frequency.
+    fn of_source(
+        &self,
+        source: &BroadbandSource<'_>,
+        output: usize,
+        frequency: f64,
+        responses: &[LoadResponse],
+    ) -> SourcePower {
+        let densities = source.density.at(frequency);
+        let mut sum = SourcePower { lines: Vec::new(), density: 0.0, sampled: 0.0 };
+        for (place, column) in &source.parts {
+            let (own, size) = (&responses[*column], densities[*place]);
+            let lines = self.transfer.behind_mirror(output, own.lines[output].clone());
+            sum.sampled += size
+                * if self.transfer.has_mirror(output) {
+                    lines.iter().map(|(_, amplitude)| amplitude.norm_sqr()).sum()
+                } else {
+                    own.sampled[output]
+                };
+            sum.density += lines.last().map_or(0.0, |(_, direct)| size * direct.norm_sqr());
+            for (line, (at, amplitude)) in lines.into_iter().enumerate() {
+                let (at, power) = (at.abs(), size * amplitude.norm_sqr());
+                match sum.lines.get_mut(line) {
+                    Some(known) if known.0 == at => known.1 += power,
+                    _ => sum.lines.push((at, power)),
+                }
+            }
+        }
+        sum
+    }
+
+    /// Returns intervals over which the integral has converged.
+    fn intervals(&self) -> Result<Vec<Interval>, ConfigError> {
+        let breaks = self.breaks();
+        let mut waiting: Vec<[f64; 2]> = breaks.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+        let mut done: Vec<Interval> = Vec::new();
+        for halving in 0..=HALVINGS {
+            let found = waiting.par_iter().map(|ends| self.interval(*ends)).collect::<Result<Vec<_>, _>>()?;
+            let mut totals = vec![0.0; self.outputs * self.sources.len()];
+            for interval in done.iter().chain(&found) {
+                interval.powers.iter().zip(&mut totals).for_each(|([power, _], total)| *total += power);
+            }
+            let is_coarse = |interval: &Interval| {
+                let mut each = interval.powers.iter().zip(&totals);
+                each.any(|([_, difference], total)| *difference > DIFFERENCE * total)
+            };
+            let may_halve = halving < HALVINGS && done.len() + 2 * found.len() < MOST_INTERVALS;
+            let (coarse, fine): (Vec<_>, Vec<_>) =
+                found.into_iter().partition(|interval| may_halve && is_coarse(interval));
+            done.extend(fine);
+            waiting = coarse.iter().flat_map(|interval| halves(interval.ends)).collect();
+            if waiting.is_empty() {
+                break;
+            }
+        }
+        Ok(done)
+    }
+
+    /// Returns an interval with its nodes and powers.
+    fn interval(&self, ends: [f64; 2]) -> Result<Interval, ConfigError> {
+        let half = 0.5 * (ends[1] - ends[0]);
+        let mut powers = vec![[0.0; 2]; self.outputs * self.sources.len()];
+        let mut nodes = Vec::new();
+        for [place, fine, coarse] in kronrod() {
+            let frequency = ends[0] + half * (1.0 + place);
+            let [weight, less] = [fine, coarse].map(|weight| weight * half / TAU);
+            let responses = self.transfer.at(frequency)?;
+            for (index, power) in powers.iter_mut().enumerate() {
+                let (output, source) = (index / self.sources.len(), index % self.sources.len());
+                let own = self.of_source(&self.sources[source], output, frequency, &responses);
+                let all: f64 = own.lines.iter().map(|(_, power)| power).sum();
+                power[0] += weight * all;
+                power[1] += (weight - less) * all;
+            }
+            nodes.push(Node { frequency, weight, responses });
+        }
+        powers.iter_mut().for_each(|power| power[1] = power[1].abs());
+        Ok(Interval { ends, nodes, powers })
+    }
+
+    /// Returns the breaks of the integral (rad/s): knots of the densities, and around each resonance those that its width needs.
+    fn breaks(&self) -> Vec<f64> {
+        let knots: Vec<f64> = self.sources.iter().flat_map(|source| source.density.knots()).collect();
+        let resonances = &self.transfer.resonances;
+        let all = || knots.iter().copied().chain(resonances.iter().map(|[frequency, _]| *frequency));
+        let open = self.sources.iter().any(|source| source.density.corners().is_some());
+        let ends = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold([f64::INFINITY, 0.0], |[least, most], value| [value.min(least), value.max(most)])
+        };
+        let [mut least, mut most] = ends(&mut knots.iter().copied());
+        if open {
+            let [lowest, highest] = ends(&mut all());
+            (least, most) = (LOWEST * lowest, HIGHEST * highest);
+        }
+        let mut breaks: BTreeMap<u64, f64> = BTreeMap::new();
+        let mut add = |frequency: f64| {
+            if (least..=most).contains(&frequency) {
+                breaks.insert(frequency.to_bits(), frequency);
+            }
+        };
+        knots.iter().copied().chain([least, most]).for_each(&mut add);
+        let mut frequency = least;
+        while frequency < most {
+            add(frequency);
+            frequency *= APART;
+        }
+        let mut around = |frequency: f64, width: f64, reach: f64| {
+            add(frequency);
+            let mut distance = width.max(1e-9 * frequency);
+            while distance < reach {
+                add(frequency - distance);
+                add(frequency + distance);
+                distance *= GRADE;
+            }
+        };
+        let (direct, aliases) = self.transfer.met(most);
+        for [frequency, width] in direct {
+            around(frequency, width, frequency * (1.0 - 1.0 / NEAR));
+        }
+        for ([frequency, width], fold) in aliases {
+            let own = (frequency - fold).abs();
+            around(frequency, width, own);
+            around(fold, GRADE * own, self.transfer.turn);
+        }
+        let mut found: Vec<f64> = breaks.into_values().collect();
+        found.dedup_by(|later, kept| *later - *kept < 1e-9 * *later);
+        found
+    }
+}
+
+fn halves([from, to]: [f64; 2]) -> [[f64; 2]; 2] {
+    let middle = 0.5 * (from + to);
+    [[from, middle], [middle, to]]
+}

@@ -1,0 +1,133 @@
+//! Responses of a loop to loads of any frequency: the lines of its outputs under a unit of each load, and the resonances that a load meets.
+
+use std::f64::consts::TAU;
+
+use flexsc_formats::document::ConfigError;
+use nalgebra::{Complex, DVector};
+
+use super::lines::LineLoop;
+use super::spectral_line::SineLoad;
+use crate::eigenvalues::eigenvalues;
+use crate::margins::frequency_response::modulus;
+use crate::open_loop::OpenLoop;
+
+/// Distance of two resonances, relative to the half width of the narrower one, below which they are one.
+const APART: f64 = 0.5;
+/// Difference from the frequency of a mode as an alias, relative, below which a resonance of the loop is that mode.
+const OF_MODE: f64 = 0.1;
+/// Largest number of aliases of resonances.
+const MOST_FOLDS: usize = 400;
+
+/// Responses of outputs to loads on the states of the body.
+pub struct LoopTransfer<'a> {
+    lines: &'a LineLoop<'a>,
+    /// Outputs, as indices.
+    outputs: &'a [usize],
+    loads: Vec<SineLoad>,
+    /// Resonances: frequency and half width (rad/s), of the body and then of the loop.
+    pub resonances: Vec<[f64; 2]>,
+    of_body: usize,
+    /// Distance of the frequencies that have the same aliases (rad/s).
+    pub turn: f64,
+}
+
+/// Frequency of a line (rad/s, with a sign) and its complex amplitude.
+pub type ComplexLine = (f64, Complex<f64>);
+
+/// Lines of each output under a unit of one load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadResponse {
+    /// Lines of each output before its mirror: aliases below the Nyquist frequency of the law, and last that of the load.
+    pub lines: Vec<Vec<ComplexLine>>,
+    /// Mean square modulus of each output before its mirror at the samples of the law.
+    pub sampled: Vec<f64>,
+}
+
+impl<'a> LoopTransfer<'a> {
+    /// Creates the responses of some outputs to loads, each a column of the rates of the body's states.
+    ///
+    /// # Errors
+    /// See [`LineLoop::lines`].
+    pub fn new(
+        lines: &'a LineLoop<'a>,
+        outputs: &'a [usize],
+        loads: &[DVector<f64>],
+    ) -> Result<Self, ConfigError> {
+        let opened = OpenLoop::from_parts(&lines.parts)?;
+        let closed = opened.transfer.sensitivity().and_then(|closed| eigenvalues(&closed.a));
+        let of_loop = closed.unwrap_or_default().into_iter().map(|pole| {
+            let (angle, size) = (libm::atan2(pole.im, pole.re), modulus(pole).max(f64::MIN_POSITIVE));
+            [angle.abs() / opened.period, libm::log(size).abs() / opened.period]
+        });
+        let is_above = |[frequency, _]: &[f64; 2]| *frequency > 0.0;
+        let of_body = eigenvalues(&lines.parts.body.a)
+            .unwrap_or_default()
+            .into_iter()
+            .map(|pole| [pole.im.abs(), pole.re.abs()]);
+        let of_body: Vec<[f64; 2]> = of_body.filter(is_above).collect();
+        let load = |cosine: &DVector<f64>| SineLoad { cosine: cosine.clone(), sine: cosine * 0.0 };
+        Ok(Self {
+            lines,
+            outputs,
+            loads: loads.iter().map(load).collect(),
+            of_body: of_body.len(),
+            resonances: of_body.into_iter().chain(of_loop.filter(is_above)).collect(),
+            turn: TAU / opened.period,
+        })
+    }
+
+    /// Returns the resonances (frequency, half width, rad/s) that a load up to a frequency meets: of body and loop, and then as aliases of
+    /// the loop, each with the multiple of the loop's rate beside which it lies.
+    pub fn met(&self, highest: f64) -> (Vec<[f64; 2]>, Vec<([f64; 2], f64)>) {
+        let (body, looped) = self.resonances.split_at(self.of_body);
+        let folded = |frequency: f64| (frequency - self.turn * libm::round(frequency / self.turn)).abs();
+        // Those of the modes are narrow, and hardly answer at their aliases.
+        let is_mode = |at: f64| body.iter().any(|[own, _]| (folded(*own) / at - 1.0).abs() < OF_MODE);
+        let mut own: Vec<[f64; 2]> = looped.iter().copied().filter(|[at, _]| !is_mode(*at)).collect();
+        own.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        own.dedup_by(|later, kept| later[0] - kept[0] < APART * kept[1].min(later[1]));
+        let folds = (libm::ceil(highest / self.turn) as usize).min(MOST_FOLDS / own.len().max(1));
+        let aliases = (1..=folds).flat_map(|fold| {
+            let turned = fold as f64 * self.turn;
+            own.iter().flat_map(move |[at, width]| {
+                [([turned - at, *width], turned), ([turned + at, *width], turned)]
+            })
+        });
+        let is_below = |at: f64| at > 0.0 && at <= highest;
+        let direct = self.resonances.iter().copied().filter(|[at, _]| is_below(*at)).collect();
+        (direct, aliases.filter(|([at, _], _)| is_below(*at)).collect())
+    }
+
+    /// Returns the response to each load at a frequency (rad/s).
+    ///
+    /// # Errors
+    /// A frequency at which a motion without damping grows without limit.
+    pub fn at(&self, frequency: f64) -> Result<Vec<LoadResponse>, ConfigError> {
+        let solved = self.lines.solved(frequency, &self.loads, self.outputs)?;
+        let squares = self.lines.sample_squares(&solved, self.outputs);
+        let of_load = |load: usize| {
+            let of_output = |place: usize| {
+                let each = solved.turns.frequencies.iter().zip(&solved.amplitudes);
+                each.map(|(at, amplitudes)| (*at, amplitudes[(place, load)])).collect()
+            };
+            LoadResponse {
+                lines: (0..self.outputs.len()).map(of_output).collect(),
+                sampled: squares.column(load).iter().copied().collect(),
+            }
+        };
+        Ok((0..self.loads.len()).map(of_load).collect())
+    }
+
+    /// Returns the lines of an output behind its mirror, if it is behind one, for those before it; the last is that of the load.
+    pub fn behind_mirror(&self, output: usize, before: Vec<ComplexLine>) -> Vec<ComplexLine> {
+        match self.lines.mirror(self.outputs[output]) {
+            Some(mirror) => mirror.lines(&before),
+            None => before,
+        }
+    }
+
+    /// Returns true if an output is behind a mirror.
+    pub fn has_mirror(&self, output: usize) -> bool {
+        self.lines.mirror(self.outputs[output]).is_some()
+    }
+}

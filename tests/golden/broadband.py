@@ -1,0 +1,202 @@
+"""Reference of tests/machines.rs: the bench of optics.py under broadband forces and lines on its wheel unit, in a sampled loop.
+
+White noise through the filters of the density's corners, the free body without its translation, and a law on the hub's rotation
+whose torque is held over a sample: covariances by Van Loan and a discrete Lyapunov equation, over time by quadrature. The windows are
+those that begin at any time: a mean over their starts. pip install numpy scipy
+"""
+
+from functools import cache
+
+import numpy as np
+from optics import Bench
+from scipy.linalg import expm, solve_discrete_lyapunov
+from scipy.optimize import minimize_scalar
+
+HUB = np.diag([4.2, 3.9, 4.8])
+LOWER, UPPER = 2 * np.pi * 5.0, 2 * np.pi * 120.0
+DENSITY = 1e-6
+BANDWIDTH = 2 * np.pi * 0.05
+FILTERS = np.array(
+    [
+        [0, 1, 0, 0],
+        [-(UPPER**2), -1.4 * UPPER, 0, 0],
+        [0, 0, 0, 1],
+        [UPPER**2, 0, -(LOWER**2), -1.4 * LOWER],
+    ]
+)
+SHAPED = np.array([UPPER**2, 0, -(LOWER**2), -1.4 * LOWER])
+
+
+def bench():
+    """The mass, damping and stiffness of the free body at rest, and the loads of the wheel unit and the line of sight over its motion."""
+    free = Bench(0.0, mounted=False, loop=False)
+    return free.m, free.d, free.k, free.wheel.T, free.sight
+
+
+def system():
+    """The body with the filters: its rates, its noise, its torques, and the line of sight."""
+    m, d, k, loads, sight = bench()
+    across = m[3:, :3] @ np.linalg.inv(m[:3, :3])
+    inverse = np.linalg.inv(m[3:, 3:] - across @ m[:3, 3:])
+    forces = inverse @ (loads[3:] - across @ loads[:3])
+    a, noise, torque = np.zeros((24, 24)), np.zeros((24, 3)), np.zeros((24, 3))
+    a[:6, 6:12] = np.eye(6)
+    a[6:12, :6], a[6:12, 6:12] = -inverse @ k[3:, 3:], -inverse @ d[3:, 3:]
+    torque[6:12] = inverse[:, :3]
+    for axis in range(3):
+        first = 12 + 4 * axis
+        a[first : first + 4, first : first + 4] = FILTERS
+        a[6:12, first : first + 4] = np.outer(forces[:, axis], SHAPED)
+        noise[first + 1, axis] = np.sqrt(DENSITY / 2)
+    return a, noise, torque, np.hstack([sight[:, 3:], np.zeros((2, 18))])
+
+
+def over(a, noise, torque, time):
+    """The flow over a time, the covariance of what the noise adds, and the effect of constant torques."""
+    order = len(a)
+    both = expm(np.block([[-a, noise @ noise.T], [np.zeros_like(a), a.T]]) * time)
+    flow = both[order:, order:].T
+    held = expm(np.block([[a, torque], [np.zeros((3, order + 3))]]) * time)[:order, order:]
+    covariance = flow @ both[:order, order:]
+    return flow, (covariance + covariance.T) / 2, held
+
+
+def deviations(period, exposure):
+    """The rms of the line of sight about x and y at the samples, over time, and of its means over exposures."""
+    a, noise, torque, sight = system()
+    gain = np.hstack([HUB * BANDWIDTH**2, np.zeros((3, 3)), 1.4 * BANDWIDTH * HUB, np.zeros((3, 15))])
+
+    def closed(time):
+        flow, added, held = over(a, noise, torque, time)
+        return flow - held @ gain, added
+
+    flow, added = closed(period)
+    p = solve_discrete_lyapunov(flow, added)
+    at, weights = np.polynomial.legendre.leggauss(16)
+    squares = np.zeros(2)
+    for place, weight in zip(0.5 * (at + 1), 0.5 * weights, strict=True):
+        after, more = closed(period * place)
+        squares += weight * np.diag(sight @ (after @ p @ after.T + more) @ sight.T)
+    # The integral of the line of sight, and the torque that is held, as further states.
+    size = len(a) + 5
+    big, drawn = np.zeros((size, size)), np.zeros((size, 3))
+    big[:24, :24], big[:24, 24:27], big[27:, :24], drawn[:24] = a, torque, sight, noise
+    none = np.zeros((size, 3))
+    sample = np.eye(size)
+    sample[24:27] = 0
+    sample[24:27, :24] = -gain
+
+    def mean_squares(start):
+        covariance = np.zeros((size, size))
+        covariance[:24, :24] = p
+        covariance = sample @ covariance @ sample.T
+        edges = [start] + [k * period for k in range(1, 2000) if start < k * period < start + exposure]
+        edges.append(start + exposure)
+        flow, added, _ = over(big, drawn, none, start)
+        covariance = flow @ covariance @ flow.T + added
+        covariance[27:], covariance[:, 27:] = 0, 0
+        for begin, end in zip(edges, edges[1:], strict=False):
+            flow, added, _ = over(big, drawn, none, end - begin)
+            covariance = flow @ covariance @ flow.T + added
+            if end < edges[-1]:
+                covariance = sample @ covariance @ sample.T
+        return np.diag(covariance)[27:] / exposure**2
+
+    means = sum(
+        weight * mean_squares(period * place)
+        for place, weight in zip(0.5 * (at + 1), 0.5 * weights, strict=True)
+    )
+    return np.sqrt(np.array([np.diag(sight @ p @ sight.T), squares, means]))
+
+
+def variance_of_load():
+    """The variance of a load with a density of 1 between the corners."""
+    both = expm(np.block([[-FILTERS, np.diag([0, 0.5, 0, 0])], [np.zeros((4, 4)), FILTERS.T]]) * 1e-3)
+    flow = both[4:, 4:].T
+    return SHAPED @ solve_discrete_lyapunov(flow, flow @ both[:4, 4:]) @ SHAPED
+
+
+@cache
+def body():
+    """The body without filters: its rates, its torques, the line of sight, and the columns of its loads."""
+    m, _, _, loads, _ = bench()
+    a, _, torque, sight = system()
+    across = m[3:, :3] @ np.linalg.inv(m[:3, :3])
+    inverse = np.linalg.inv(m[3:, 3:] - across @ m[:3, 3:])
+    columns = np.vstack([np.zeros((6, 6)), inverse @ (loads[3:] - across @ loads[:3])])
+    return a[:12, :12], torque[:12], sight[:, :12], columns
+
+
+@cache
+def flow_of_body(time):
+    """The flow of the body over a time, and the effect of constant torques."""
+    a, torque, _, _ = body()
+    flow, _, held = over(a, np.zeros((12, 1)), torque, time)
+    return flow, held
+
+
+def line(period, w, load):
+    """The complex amplitude of the line of sight about x and y at w, and its mean square, under a force and a torque cos(w t)."""
+    a, _, sight, columns = body()
+    column = columns @ load
+    gain = np.hstack([HUB * BANDWIDTH**2, np.zeros((3, 3)), 1.4 * BANDWIDTH * HUB, np.zeros((3, 3))])
+    own = np.linalg.solve(1j * w * np.eye(12) - a, column)
+
+    def after(start, time):
+        flow, held = flow_of_body(time)
+        return flow @ (start - own) + own * np.exp(1j * w * time) - held @ (gain @ start)
+
+    def closed(time):
+        flow, held = flow_of_body(time)
+        return flow - held @ gain
+
+    turn = np.exp(1j * w * period)
+    start = np.linalg.solve(turn * np.eye(12) - closed(period), after(np.zeros(12, complex), period))
+    at, weights = np.polynomial.legendre.leggauss(24)
+    amplitude, square = np.zeros(2, complex), np.zeros(2)
+    for place, weight in zip(0.5 * (at + 1) * period, 0.5 * weights, strict=True):
+        value = sight @ after(start, place)
+        amplitude += weight * value * np.exp(-1j * w * place)
+        square += weight * np.abs(value) ** 2 / 2
+    return amplitude, square
+
+
+def cooler(period, f):
+    """The mean squares of the line of sight under a cooler of two harmonics, and its peaks."""
+    first, one = line(period, 2 * np.pi * f, np.array([0.01, 0, 0.02, 0, 0, 0]))
+    second, other = line(period, 4 * np.pi * f, np.array([0, 0.003, 0, 2e-4, 0, 0]))
+    angles = np.linspace(0, 2 * np.pi, 2_001)
+    waves = np.outer(first, np.exp(1j * angles)) + np.outer(second * np.exp(1j), np.exp(2j * angles))
+    return one + other, np.abs(waves.real).max(axis=1)
+
+
+def worst(period, low, high):
+    """The worst frequency of the cooler (Hz) for each axis, with the rms and the peak there."""
+    # The law has peaks at both sides of multiples of half its sampling rate.
+    near = [k / period / 2 + np.linspace(-0.1, 0.1, 401) for k in range(1, 100)]
+    grid = np.unique(np.concatenate([np.linspace(low, high, 601), *near]))
+    grid = grid[(grid >= low) & (grid <= high)]
+    found = []
+    for about in range(2):
+        sizes = [cooler(period, f)[0][about] for f in grid]
+        best = int(np.argmax(sizes))
+        ends = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
+        f = minimize_scalar(
+            lambda f, about=about: -cooler(period, f)[0][about] * 1e12,
+            bounds=ends,
+            method="bounded",
+            options={"xatol": 1e-9},
+        ).x
+        square, peak = cooler(period, f)
+        found.append((f, np.sqrt(square[about]), peak[about]))
+    return found
+
+
+if __name__ == "__main__":
+    np.set_printoptions(precision=12)
+    print("variance of the load", variance_of_load())
+    for period in (0.001, 0.01):
+        print(period, "s: at samples, over time, means over 20 ms", deviations(period, 0.02))
+    square, peak = cooler(0.01, 51.0)
+    print("cooler at 51 Hz:", np.sqrt(square), peak)
+    print("worst of 51 Hz within 10 %:", worst(0.01, 45.9, 56.1))

@@ -1,0 +1,218 @@
+//! Broadband forces and lines of machines on the bench of micro-vibration, against an independent computation, in linear loops and in runs.
+
+use serde_json::Value;
+
+use crate::optics::BENCH;
+use crate::util::Dir;
+
+/// Density of the forces on the wheel unit.
+const DENSITY: &str = r#"
+[[disturbance]]
+point = "rotor"
+density = { force = [1e-6, 1e-6, 1e-6], lower = "5 Hz", upper = "120 Hz" }
+"#;
+
+/// Returns the bench under a law on the hub's rotation, of 0.05 Hz and with samples of a period (s), and what else acts.
+fn bench(period: f64, loads: &str) -> String {
+    let start = BENCH.find("[[sensor]]").expect("sensors");
+    let end = BENCH.find("[actuator").expect("actuators");
+    let law = format!(
+        "[law.attitude]\nperiod = {period}\nbandwidth = \"0.05 Hz\"\ndamping = 0.7\n\
+         inertia = [[4.2, 0, 0], [0, 3.9, 0], [0, 0, 4.8]]\n"
+    );
+    let text = format!("{}{law}{}{loads}", &BENCH[..start], &BENCH[end..]);
+    text.replace("seed = 1\n", "seed = 1\nsensor = \"continuous\"\n")
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+/// Asserts that two numbers agree to a fraction of the second.
+fn agree(what: &str, found: f64, expected: f64, part: f64) {
+    assert!((found / expected - 1.0).abs() < part, "{what}: {found:.12e}, expected {expected:.12e}");
+}
+
+/// Samples at 1 kHz, and at 100 Hz, where the law shakes the second mode through its aliases. Source: `tests/golden/broadband.py`; the
+/// wheels of the scenario have some inertia, which is 2e-8 of the deviations.
+#[test]
+fn broadband_forces_move_the_line_of_sight_as_covariances_say() {
+    let dir = Dir::new();
+    #[rustfmt::skip]
+    let golden = [
+        (0.001, [5.755_744_551_780e-8, 6.221_408_938_144e-8], [5.755_744_552_569e-8, 6.221_408_940_798e-8], [5.671_125_102_175e-8, 6.069_332_081_679e-8]),
+        (0.01, [6.527_487_413_753e-8, 9.888_027_571_555e-8], [6.527_497_266_220e-8, 9.888_080_345_691e-8], [6.452_866_031_218e-8, 9.792_306_828_005e-8]),
+    ];
+    for (period, at_samples, over_time, means) in golden {
+        dir.write("bench.toml", bench(period, DENSITY));
+        let command = "spectrum bench.toml --signal line_of_sight0_x,line_of_sight0_y --window 0.02 --json";
+        let report = dir.run(command).exits(0).json();
+        assert_eq!(report["sources"], serde_json::json!(["disturbance[0].density"]));
+        for about in 0..2 {
+            let output = &report["outputs"][about];
+            agree("rms", number(&output["rms"]), over_time[about], 1e-7);
+            agree("source", number(&output["rms_by_source"][0]), over_time[about], 1e-7);
+            agree("samples", number(&output["sample_rms"]), at_samples[about], 1e-7);
+            agree("mean", number(&output["window"]["mpe"]), means[about], 1e-7);
+            let last = output["cumulative_rms"].as_array().and_then(|all| all.last()).expect("numbers");
+            // At 1 kHz the loop is nearly the continuous one of the bench, whose wheel turns.
+            if period < 0.005 {
+                let bench = [(5.755_262_772e-8, 1e-4), (6.211_101_866e-8, 2e-3)];
+                agree("bench", number(&output["rms"]), bench[about].0, bench[about].1);
+            }
+            agree("cumulative", number(last), over_time[about], 1e-7);
+        }
+    }
+}
+
+/// Cooler whose strokes are known to a tenth.
+const COOLER: &str = r#"
+[[disturbance]]
+point = "rotor"
+[disturbance.lines]
+frequency = "51 Hz"
+harmonics = [
+  { order = 1, force = [0.01, 0, 0.02] },
+  { order = 2, force = [0, 0.003, 0], torque = [2e-4, 0, 0], phase = 1.0 },
+]
+"#;
+
+/// At the worst frequency for x an alias of the second harmonic is within the band of the law, and 200 times the rest; for y the worst is
+/// an end of the range. Source: `tests/golden/broadband.py`.
+#[test]
+fn lines_of_a_machine_are_at_their_worst_frequency() {
+    let dir = Dir::new();
+    let command = "spectrum bench.toml --signal line_of_sight0_x,line_of_sight0_y --json";
+    let machines = |about: usize, text: String| {
+        dir.write("bench.toml", text);
+        let report = dir.run(command).exits(0).json();
+        let own = &report["outputs"][about]["machines"][0];
+        assert_eq!(own["source"], "disturbance[0].lines");
+        ["frequency_rad_s", "rms", "peak"].map(|key| number(&own[key]))
+    };
+    let nominal = [(5.618_647_738_181e-10, 9.551_164_11e-10), (3.128_011_993_153e-10, 4.441_789_69e-10)];
+    for (about, (rms, peak)) in nominal.into_iter().enumerate() {
+        let found = machines(about, bench(0.01, COOLER));
+        // Aliases above the Nyquist frequency of the law are not among the lines.
+        agree("rms", found[1], rms, 1e-6);
+        agree("peak", found[2], peak, 1e-7);
+    }
+    let wide = COOLER.replace("harmonics", "tolerance = 0.1\nharmonics");
+    let hertz = std::f64::consts::TAU;
+    let [at, rms, peak] = machines(0, bench(0.01, &wide));
+    agree("at", at / hertz, 49.987_800_51, 1e-7);
+    agree("rms", rms, 1.564_895_101_171e-7, 1e-7);
+    agree("peak", peak, 7.510_75e-10, 1e-5);
+    let [at, rms, _] = machines(1, bench(0.01, &wide));
+    agree("at", at / hertz, 45.9, 1e-7);
+    agree("rms", rms, 1.276_624_948_6e-9, 1e-6);
+}
+
+/// Runs draw what linear loops have: a line of sight under both kinds of load, after what the start of a load has left in the loop.
+#[test]
+fn runs_have_the_motion_of_linear_loops() {
+    let dir = Dir::new();
+    let rms = |report: &Value| {
+        let outputs = report["outputs"].as_array().expect("outputs");
+        outputs.iter().map(|own| number(&own["rms"]).powi(2)).sum::<f64>().sqrt()
+    };
+    for (load, duration, part) in [(DENSITY, 160.0, 0.12), (COOLER, 100.0, 0.01)] {
+        dir.write("bench.toml", bench(0.01, load));
+        let linear = "spectrum bench.toml --signal line_of_sight0_x,line_of_sight0_y --json";
+        let expected = rms(&dir.run(linear).exits(0).json());
+        let set = format!("--set duration={duration} --set line_of_sight[0].window=[80,{duration}]");
+        let run = dir.run(&format!("simulate bench.toml {set} --log none --json")).exits(0).json();
+        let found = number(&run["metrics"]["line_of_sight_rms_rad"][0]);
+        agree(load, found, expected, part);
+    }
+}
+
+/// Requirement on the line of sight, sampled like it.
+const REQUIREMENT: &str = r#"
+[[requirement]]
+name = "sharp"
+quantity = "line_of_sight"
+point = "detector"
+axis = "y"
+limit = "1 arcsec"
+"#;
+
+#[test]
+fn budgets_have_machines() {
+    let dir = Dir::new();
+    let budget = |load: &str| {
+        dir.write("bench.toml", bench(0.01, load) + REQUIREMENT);
+        let report = dir.run("budget bench.toml --runs 2 --json").exits(0).json();
+        report["budgets"][0].clone()
+    };
+    let own = budget(DENSITY);
+    agree("noise", number(&own["linear_noise"]), 9.888_080_3e-8, 1e-6);
+    let own = budget(COOLER);
+    let sines = own["linear_sources"]["amplitudes"].as_array().expect("sines").iter().map(number);
+    let rms = sines.map(|amplitude| 0.5 * amplitude * amplitude).sum::<f64>().sqrt();
+    agree("sines", rms, 3.128_011_993e-10, 1e-6);
+}
+
+#[test]
+fn machines_that_do_not_hold_are_refused() {
+    let dir = Dir::new();
+    for (load, from, to, why) in [
+        (
+            DENSITY,
+            "upper = \"120 Hz\"",
+            "upper = \"2 Hz\"",
+            "`disturbance[0].density.upper` must be above `lower`",
+        ),
+        (DENSITY, ", upper = \"120 Hz\"", "", "`disturbance[0].density.upper` must be given"),
+        (
+            DENSITY,
+            "force = [1e-6, 1e-6, 1e-6]",
+            "force = [0, 0, 0]",
+            "`disturbance[0].density.force` must have a density",
+        ),
+        (
+            DENSITY,
+            "lower = ",
+            "table = [[1, 1], [2, 1]], lower = ",
+            "`disturbance[0].density.table` has the densities",
+        ),
+        (DENSITY, "density", "force = [1, 0, 0]\ndensity", "`disturbance[0].density` must be alone"),
+        (DENSITY, "rotor", "stator", "`disturbance[0].point`"),
+        (COOLER, "order = 1", "order = 0", "order`: must be a positive number"),
+        (
+            COOLER,
+            "frequency",
+            "tolerance = 0.9\nfrequency",
+            "`disturbance[0].lines.tolerance` must be at most 0.5",
+        ),
+        (
+            COOLER,
+            "order = 2, force = [0, 0.003, 0], torque = [2e-4, 0, 0]",
+            "order = 2",
+            "`disturbance[0].lines.harmonics[1]` must have",
+        ),
+    ] {
+        assert!(load.contains(from), "{from}");
+        dir.write("bench.toml", bench(0.01, &load.replace(from, to)));
+        dir.run("check bench.toml").exits(2).says(&[why]);
+    }
+    // A table acts in linear tools alone.
+    let table = "density = { table = \"test.csv\" }";
+    let text = DENSITY.replace(&DENSITY[DENSITY.find("density").expect("a key")..], table);
+    dir.write("bench.toml", bench(0.01, &text));
+    dir.write("test.csv", "frequency,force\n5,1e-7\n40,1e-6\n200,1e-8\n");
+    dir.run("spectrum bench.toml").exits(0).says(&["disturbance[0].density"]);
+    let refused = dir.run("simulate bench.toml").exits(2);
+    refused.says(&["disturbance[0].density.table", "has no run: `spectrum` has it"]);
+    assert!(!dir.has("bench.mcap"));
+    let open = bench(0.01, DENSITY);
+    let law = &open[open.find("[law").expect("a law")..open.find("[actuator").expect("an actuator")];
+    let actuators =
+        &open[open.find("[actuator").expect("actuators")..open.find("[[disturbance").expect("a load")];
+    dir.write("open.toml", open.replace(law, "[law.open]\n").replace(actuators, ""));
+    dir.run("spectrum open.toml").exits(2).says(&["law.open", "answers a slow force with 1/f²"]);
+    dir.write("test.csv", "frequency,force\n5,1e-7\n4,1e-6\n");
+    dir.run("spectrum bench.toml")
+        .exits(2)
+        .says(&["test.csv", "line 3: must have increasing positive frequencies"]);
+}
