@@ -140,6 +140,10 @@ int main(int count, char **arguments)
     const uint16_t port = (uint16_t)(count > 2 ? strtoul(arguments[2], NULL, 10) : 5010);
     const int transport = count > 3 && strcmp(arguments[3], "tcp") == 0 ? FLEXSC_TCP : FLEXSC_UDP;
     const int64_t failure = count > 4 ? strtoll(arguments[4], NULL, 10) : INT64_MAX - OUTAGE;
+    if (failure <= 0) {
+        fprintf(stderr, "error: the time of the failure must be above 0 s, got %s\n", arguments[4]);
+        return 2;
+    }
     if (flexsc_connect(&client, transport, host, port, 0) != 0) {
         fprintf(stderr, "error: %s\n", client.error);
         return 1;

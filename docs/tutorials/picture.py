@@ -140,7 +140,7 @@ print_contrast(bare)
 #
 # ## A fine mirror
 #
-# A mirror in the beam follows what a guidance sensor sees: at the end of each exposure of 1 ms, the command changes by a quarter of the mean error.
+# A mirror in the beam follows what a guidance sensor sees: 1 ms after each exposure of 1 ms, the command changes by a quarter of its mean error.
 
 # %%
 mirror = {"frequency": "300 Hz", "damping": 0.6, "period": "1 ms", "gain": 0.25, "noise": 2e-8}

@@ -156,7 +156,8 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         package.vectors
     );
     for own in &package.accuracy {
-        eprintln!("{}: at most {:.1e} {} from double precision", own.output, own.difference, own.unit);
+        let output = format!("{} of {}", own.output, own.function);
+        eprintln!("{output}: at most {:.1e} {} from double precision", own.difference, own.unit);
     }
     for part in &package.excluded_parts {
         let what = if part.is_supplied { "input of it" } else { "not part of it" };

@@ -165,7 +165,7 @@ impl VariableTable {
         }
         if self.axes > 1 {
             for axis in 0..3 {
-                let text = "Momentum stored in the rotors, as available to the drives, body axes".to_owned();
+                let text = "Absolute momentum stored in the rotors, body axes".to_owned();
                 let name = format!("stored_momentum[{}]", axis + 1);
                 self.push(name, text, "N m s", Causality::Output, Quantity::StoredMomentum(axis));
             }

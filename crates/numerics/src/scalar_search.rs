@@ -106,9 +106,9 @@ pub fn resonance(mut f: impl FnMut(f64) -> f64, arguments: [f64; 3], values: [f6
         let value = square(f(next));
         // What is beyond the better of two arguments is no maximum.
         if (value <= at) == (next < x) {
-            high = x.max(next)
+            high = x.max(next);
         } else {
-            low = x.min(next)
+            low = x.min(next);
         }
         let mut all = [best[0], best[1], best[2], (value, next)];
         all.sort_by(|a, b| a.0.total_cmp(&b.0));

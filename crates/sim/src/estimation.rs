@@ -144,9 +144,6 @@ impl Estimation {
     /// state.
     #[inline]
     pub fn predict(&mut self, now: Instant, plant: &Plant, sensors: &Sensors) {
-        if sensors.field_is_stale(now) {
-            self.estimates.iter_mut().for_each(|estimate| estimate.field_rate = 0.0);
-        }
         let mut estimates = std::mem::take(&mut self.estimates);
         self.predict_into(now, plant, sensors, &mut estimates);
         self.estimates = estimates;
@@ -161,6 +158,9 @@ impl Estimation {
         sensors: &Sensors,
         estimates: &mut [StateEstimate],
     ) {
+        if sensors.field_is_stale(now) {
+            estimates.iter_mut().for_each(|estimate| estimate.field_rate = 0.0);
+        }
         if sensors.is_continuous() {
             let (truth, angles) = (plant.truth(), plant.sensed_angles(&self.origin));
             for (axis, estimate) in estimates.iter_mut().enumerate() {

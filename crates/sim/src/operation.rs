@@ -214,7 +214,9 @@ impl RunView<'_> {
                 .to_vec(),
             FlightQuantity::WheelSpeed => self.loads.wheel_speeds(self.now, self.plant.truth().rigid_rate),
             FlightQuantity::Field => field(self.sensors.measured_field()),
-            FlightQuantity::FieldRate => field(self.sensors.field_rate),
+            FlightQuantity::FieldRate => {
+                field(self.sensors.field_rate.filter(|_| !self.sensors.field_is_stale(self.now)))
+            }
             _ => Vec::new(),
         }
     }

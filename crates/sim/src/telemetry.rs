@@ -99,7 +99,7 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// Returns the momentum stored in the rotors, as available to the drives (N m s, body axes).
+    /// Returns the absolute momentum stored in the rotors (N m s, body axes).
     pub fn stored_momentum(&self) -> [f64; 3] {
         self.loads.actuator.capabilities().stored_momentum(self.clock.now())
     }

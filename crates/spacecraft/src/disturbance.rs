@@ -339,7 +339,7 @@ impl DisturbanceState {
         if let Some((machine, next)) = &mut self.machine {
             while *next <= now {
                 machine.advance(&mut self.draws);
-                *next = *next + machine.step();
+                *next += machine.step();
             }
             self.push = Some(machine.effect());
         }

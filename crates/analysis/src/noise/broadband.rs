@@ -184,7 +184,9 @@ impl Integral<'_> {
             }
             nodes.push(Node { frequency, weight, responses });
         }
-        powers.iter_mut().for_each(|power| power[1] = power[1].abs());
+        for power in &mut powers {
+            power[1] = power[1].abs();
+        }
         Ok(Interval { ends, nodes, powers })
     }
 

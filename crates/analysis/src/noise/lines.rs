@@ -7,11 +7,13 @@
 use std::collections::BTreeMap;
 
 use flexsc_formats::document::ConfigError;
+use flexsc_formats::reader_units::ReaderUnits;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::line_solver::{Amplitudes, LineFrequencies, LineSolver, LoadedMotion, undamped};
 use super::mirror_states::{MirrorOutput, with_mirrors};
 use super::motion::{Motion, OutputRow};
+use super::noisy_loop::{NoiseError, stable_loops};
 use super::output::{output_index, outputs};
 use super::period_rows::PeriodRows;
 use super::sample_times::SamplePlace;
@@ -56,7 +58,16 @@ impl<'a> LineLoop<'a> {
     /// # Errors
     /// See [`Self::from_scenario`].
     pub fn at_wheel_speed(&self, speed: f64) -> Result<Option<Self>, ConfigError> {
-        self.parts.at_wheel_speed(speed)?.map(Self::from_parts).transpose()
+        let Some(parts) = self.parts.at_wheel_speed(speed)? else { return Ok(None) };
+        let unstable = |fault: NoiseError| match fault {
+            NoiseError::Key(fault) => fault,
+            other => {
+                let at = ReaderUnits::Engineering.quantity(speed, "rad/s");
+                ConfigError::new("actuator.wheels.points", format!("wheels at {at}: {other}"))
+            }
+        };
+        stable_loops(&parts).map_err(unstable)?;
+        Self::from_parts(parts).map(Some)
     }
 
     /// Returns the closed loop of these parts, which are cut open at the command.

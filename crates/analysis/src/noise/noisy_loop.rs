@@ -102,10 +102,7 @@ impl NoisyLoop {
     /// # Errors
     /// See [`Self::from_scenario`].
     pub(crate) fn from_parts(parts: &LoopParts<'_>) -> Result<Self, NoiseError> {
-        let spectral_radius = stable_radius(&OpenLoop::from_parts(parts)?)?;
-        for (line, mirror) in mirrors(parts.scenario) {
-            stable_radius(&MirrorLoop::new(mirror).open_loop(line))?;
-        }
+        let spectral_radius = stable_loops(parts)?;
         let parts = &with_mirrors(parts);
         let sources = sources(parts)?;
         let PeriodRows { a, g, pieces, period, step, drawn_by, .. } = PeriodRows::new(parts, &sources)?;
@@ -283,8 +280,17 @@ impl NoisyLoop {
     }
 }
 
+/// Returns the spectral radius of the closed loop of a law; the loops of fine mirrors must be stable, too.
+pub(super) fn stable_loops(parts: &LoopParts<'_>) -> Result<f64, NoiseError> {
+    let radius = stable_radius(&OpenLoop::from_parts(parts)?)?;
+    for (line, mirror) in mirrors(parts.scenario) {
+        stable_radius(&MirrorLoop::new(mirror).open_loop(line))?;
+    }
+    Ok(radius)
+}
+
 /// Returns the spectral radius of a loop when it is closed.
-pub(super) fn stable_radius(opened: &OpenLoop) -> Result<f64, NoiseError> {
+fn stable_radius(opened: &OpenLoop) -> Result<f64, NoiseError> {
     let first = opened.signals.first().map_or("", |signal| &signal.name);
     let failed = || NoiseError::Unstable(UnstableLoop::with_unknown_poles(first));
     let closed = opened.transfer.sensitivity().ok_or_else(failed)?;

@@ -149,7 +149,7 @@ impl NoiseReport {
     /// are not.
     pub fn from_scenario(scenario: &Scenario, request: &NoiseRequest) -> Result<Self, NoiseError> {
         request.check_image().map_err(|why| NoiseError::Request(why.to_owned()))?;
-        let is_open = matches!(scenario.law.about(0), LawKind::Open(_));
+        let is_open = (0..3).any(|axis| matches!(scenario.law.about(axis), LawKind::Open(_)));
         if is_open && scenario.disturbance.iter().any(|own| own.density.is_some()) {
             let why = "leaves the body free, which answers a slow force with 1/f²: what a `density` does below its corner or its table decides \
                        how far it drifts; give a law that holds the body";

@@ -26,6 +26,8 @@ const REFINED: usize = 3;
 const EQUAL: f64 = 1e-12;
 /// Instants in a period of the highest harmonic at which the peak is sought.
 const INSTANTS: f64 = 32.0;
+/// Largest whole multiple of the lowest harmonic for which the peak is searched for.
+const MOST_WHOLE: f64 = 1000.0;
 
 /// Machine with lines.
 pub(super) struct ToneSource<'a> {
@@ -152,17 +154,17 @@ impl ToneLoop<'_> {
 }
 
 /// Returns the largest magnitude over time of sines, each with its multiple of a frequency and its complex amplitude: of multiples that
-/// are not whole, the sum of the amplitudes.
+/// are not whole, or up to very high ones, the sum of the amplitudes.
 fn peak(harmonics: &[(f64, Complex<f64>)]) -> f64 {
     let least = harmonics.first().map_or(1.0, |harmonic| harmonic.0);
     let is_whole = |multiple: f64| {
         let ratio = multiple / least;
         (ratio - libm::round(ratio)).abs() < 1e-9
     };
-    if !harmonics.iter().all(|(multiple, _)| is_whole(*multiple)) {
+    let most = harmonics.iter().map(|harmonic| harmonic.0 / least).fold(1.0, f64::max);
+    if most > MOST_WHOLE || !harmonics.iter().all(|(multiple, _)| is_whole(*multiple)) {
         return harmonics.iter().map(|(_, amplitude)| modulus(*amplitude)).sum();
     }
-    let most = harmonics.last().map_or(1.0, |harmonic| harmonic.0 / least);
     let count = libm::ceil(INSTANTS * most) as usize;
     let value = |angle: f64| {
         let all = harmonics

@@ -11,6 +11,9 @@ use crate::eigenvalues::eigenvalues;
 use crate::margins::frequency_response::modulus;
 use crate::open_loop::OpenLoop;
 
+/// Frequency and half width of a resonance (rad/s).
+type Resonance = [f64; 2];
+
 /// Distance of two resonances, relative to the half width of the narrower one, below which they are one.
 const APART: f64 = 0.5;
 /// Difference from the frequency of a mode as an alias, relative, below which a resonance of the loop is that mode.
@@ -78,7 +81,7 @@ impl<'a> LoopTransfer<'a> {
 
     /// Returns the resonances (frequency, half width, rad/s) that a load up to a frequency meets: of body and loop, and then as aliases of
     /// the loop, each with the multiple of the loop's rate beside which it lies.
-    pub fn met(&self, highest: f64) -> (Vec<[f64; 2]>, Vec<([f64; 2], f64)>) {
+    pub fn met(&self, highest: f64) -> (Vec<Resonance>, Vec<(Resonance, f64)>) {
         let (body, looped) = self.resonances.split_at(self.of_body);
         let folded = |frequency: f64| (frequency - self.turn * libm::round(frequency / self.turn)).abs();
         // Those of the modes are narrow, and hardly answer at their aliases.

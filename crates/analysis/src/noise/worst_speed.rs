@@ -2,11 +2,10 @@
 
 use super::imbalance::WheelImbalance;
 use super::lines::LineLoop;
-use super::noisy_loop::{NoiseError, stable_radius};
+use super::noisy_loop::{NoiseError, stable_loops};
 use super::report::without_speed;
 use super::window_rms::WindowRms;
 use super::windows::Window;
-use crate::open_loop::OpenLoop;
 use flexsc_formats::document::ConfigError;
 use flexsc_scenario::Scenario;
 
@@ -38,7 +37,7 @@ impl WorstSpeed {
             || ConfigError::new("actuator.wheels.imbalance", "is missing: without it wheels have no lines");
         let imbalance = WheelImbalance::from_scenario(scenario)?.ok_or_else(missing)?;
         let lines = LineLoop::from_scenario(scenario)?;
-        stable_radius(&OpenLoop::from_parts(&lines.parts)?)?;
+        stable_loops(&lines.parts)?;
         let place = lines.output(&output.name).map_err(NoiseError::Request)?;
         let found = imbalance.largest_spectrum(&lines, &[place])?.ok_or_else(without_speed)?;
         let values: Vec<f64> = match output.window {

@@ -146,7 +146,7 @@ impl ModeInputs {
             }
             FlightQuantity::Field => (3, "Last measured magnetic field (T); NaN before"),
             FlightQuantity::FieldRate => {
-                (3, "Change of the field by the last two readings (T/s); NaN before")
+                (3, "Change of the field by the last two readings (T/s); NaN before, and when none is recent")
             }
             FlightQuantity::StoredMomentum => (3, ""),
             FlightQuantity::WheelSpeed => {

@@ -67,15 +67,17 @@ fn of_call(call: &CallLayout) -> Vec<OutputAccuracy> {
 impl OutputAccuracy {
     /// Takes the outputs of a call in double and in single precision.
     fn take(&mut self, double: &[f64], single: &[f64], is_unit: bool) {
-        let each = || double.iter().zip(single).map(|(double, single)| (double - single).abs());
+        let each = || double.iter().zip(single);
         if let (true, [_, _, _, _]) = (is_unit, double) {
-            // The chord of half the angle.
-            let chord = each().map(|difference| difference * difference).sum::<f64>().sqrt();
-            self.difference = self.difference.max(2.0 * chord);
+            // The chord of half the angle: both signs of a quaternion are one attitude.
+            let square =
+                |sign: f64| each().map(|(double, single)| (double - sign * single).powi(2)).sum::<f64>();
+            self.difference = self.difference.max(2.0 * square(1.0).min(square(-1.0)).sqrt());
             return;
         }
         self.largest = double.iter().fold(self.largest, |most, number| most.max(number.abs()));
-        self.difference = each().fold(self.difference, f64::max);
+        let differences = each().map(|(double, single)| (double - single).abs());
+        self.difference = differences.fold(self.difference, f64::max);
     }
 }
 

@@ -45,7 +45,9 @@ impl Choices {
             ControlSystem::Relays(_) | ControlSystem::BDot(_) => {}
             ControlSystem::Modes(modes) => {
                 self.add_actuation(&modes.actuation);
-                modes::systems(modes).iter().for_each(|own| self.add(own));
+                for own in modes::systems(modes) {
+                    self.add(&own);
+                }
             }
             ControlSystem::Sampled(laws) => {
                 self.add_actuation(&laws.actuation);

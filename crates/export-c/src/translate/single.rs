@@ -53,7 +53,7 @@ pub fn in_single(text: &str) -> String {
             let known = WORDS.iter().find(|(double, _)| *double == word);
             match (known, word.strip_prefix("f64_")) {
                 (Some((_, own)), _) => single += own,
-                (None, Some(helper)) => single += &format!("f32_{helper}"),
+                (None, Some(helper)) => single.extend(["f32_", helper]),
                 (None, None) => single += word,
             }
             continue;
