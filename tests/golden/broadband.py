@@ -1,11 +1,14 @@
-"""Reference of tests/machines.rs: the bench of optics.py under broadband forces and lines on its wheel unit, in a sampled loop.
+"""Reference of tests/machines.rs: the bench of optics.py under broadband forces and lines on its wheel
+unit, in a sampled loop.
 
-White noise through the filters of the density's corners, the free body without its translation, and a law on the hub's rotation
-whose torque is held over a sample: covariances by Van Loan and a discrete Lyapunov equation, over time by quadrature. The windows are
-those that begin at any time: a mean over their starts. pip install numpy scipy
+White noise through the filters of the density's corners, the free body without its translation, and a law
+on the hub's rotation whose torque is held over a sample: covariances by Van Loan and a discrete Lyapunov
+equation, over time by quadrature. The windows are those that begin at any time: a mean over their starts.
+pip install numpy scipy
 """
 
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 from optics import Bench
@@ -28,7 +31,7 @@ SHAPED = np.array([UPPER**2, 0, -(LOWER**2), -1.4 * LOWER])
 
 
 def bench():
-    """The mass, damping and stiffness of the free body at rest, and the loads of the wheel unit and the line of sight over its motion."""
+    """Mass, damping, stiffness of the free body at rest; loads of the wheel unit, line of sight."""
     free = Bench(0.0, mounted=False, loop=False)
     return free.m, free.d, free.k, free.wheel.T, free.sight
 
@@ -62,7 +65,7 @@ def over(a, noise, torque, time):
 
 
 def deviations(period, exposure):
-    """The rms of the line of sight about x and y at the samples, over time, and of its means over exposures."""
+    """The rms about x and y at the samples, over time, and of the means over exposures."""
     a, noise, torque, sight = system()
     gain = np.hstack([HUB * BANDWIDTH**2, np.zeros((3, 3)), 1.4 * BANDWIDTH * HUB, np.zeros((3, 15))])
 
@@ -95,7 +98,7 @@ def deviations(period, exposure):
         flow, added, _ = over(big, drawn, none, start)
         covariance = flow @ covariance @ flow.T + added
         covariance[27:], covariance[:, 27:] = 0, 0
-        for begin, end in zip(edges, edges[1:], strict=False):
+        for begin, end in pairwise(edges):
             flow, added, _ = over(big, drawn, none, end - begin)
             covariance = flow @ covariance @ flow.T + added
             if end < edges[-1]:
@@ -136,7 +139,7 @@ def flow_of_body(time):
 
 
 def line(period, w, load):
-    """The complex amplitude of the line of sight about x and y at w, and its mean square, under a force and a torque cos(w t)."""
+    """The complex amplitudes about x and y at w, and the mean square, under a force and a torque cos(w t)."""
     a, _, sight, columns = body()
     column = columns @ load
     gain = np.hstack([HUB * BANDWIDTH**2, np.zeros((3, 3)), 1.4 * BANDWIDTH * HUB, np.zeros((3, 3))])

@@ -1,10 +1,11 @@
-"""Reference of tests/optics.rs and tests/mounts.rs: the line of sight of three optics under loads on a wheel, bolted to the hub and on
-a mount with whirl.
+"""Reference of tests/optics.rs and tests/mounts.rs: the line of sight of three optics under loads on a
+wheel, bolted to the hub and on a mount with whirl.
 
-Physical coordinates: hub, clamped modes of the telescope, and the wheel, with displacement and rotation against the mount. A soft loop
-holds the hub's rotation. Lines are complex solutions, poles those of the state space. The published table of this bench also holds the
-hub's place by a soft spring, which flexsc does not have: the script asserts that table, and prints the numbers without the spring.
-pip install numpy scipy
+Physical coordinates: hub, clamped modes of the telescope, and the wheel, with displacement and rotation
+against the mount. A soft loop holds the hub's rotation. Lines are complex solutions, poles those of the
+state space. The published table of this bench also holds the hub's place by a soft spring, which flexsc
+does not have: the script asserts that table, and prints the numbers without the spring. pip install numpy
+scipy
 """
 
 import numpy as np
@@ -27,7 +28,7 @@ SHAPES = np.array(
     [[3.1, 0, 0, 0, 1.10, 0], [0, 2.9, 0.2, -1.02, 0, 0.03], [0.2, -0.1, 2.6, 0.04, 0.01, 0.15]]
 )
 JOINT = np.array([0, 0, 0.35])
-# Place, mass, inertia across the axis y and about it, mount: translation and rocking on a fixed base (rad/s), damping ratio.
+# Place, mass, inertia across the axis y and about it; mount: translation, rocking (rad/s), damping ratio.
 WHEEL = np.array([0.12, -0.05, -0.18])
 MASS, ACROSS, SPIN = 0.95, 9e-4, 1.6e-3
 MOUNT = 2 * np.pi * np.array([22.0, 30.0])
@@ -65,13 +66,15 @@ def mass(m, inertia, at):
 
 
 class Bench:
-    """The bench with its wheel at a speed (rad/s): states of the hub (6), the telescope (3) and the wheel on its mount (5)."""
+    """The bench with its wheel at a speed (rad/s): states of hub (6), telescope (3), wheel (5)."""
 
     def __init__(self, speed, *, mounted=True, held=False, whirl=True, loop=True):
         hub = np.diag([4.2, 3.9, 4.8])
         count = 14 if mounted else 9
         m, d, k = (np.zeros((count, count)) for _ in range(3))
-        m[:6, :6] = mass(62.0, hub, np.zeros(3)) + mass(18.0, np.diag([0.92, 0.92, 0.31]), JOINT + np.array([0, 0, 0.30]))
+        m[:6, :6] = mass(62.0, hub, np.zeros(3)) + mass(
+            18.0, np.diag([0.92, 0.92, 0.31]), JOINT + np.array([0, 0, 0.30])
+        )
         m[6:9, :6] = SHAPES @ rigid(JOINT)
         m[:6, 6:9] = m[6:9, :6].T
         m[6:9, 6:9] = np.eye(3)
@@ -81,7 +84,11 @@ class Bench:
         if mounted:
             self.wheel[:, 9:] = np.eye(6)[:, [0, 1, 2, 3, 5]]
         inertia = np.diag([ACROSS, SPIN, ACROSS])
-        m += self.wheel.T @ np.block([[MASS * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), inertia]]) @ self.wheel
+        m += (
+            self.wheel.T
+            @ np.block([[MASS * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), inertia]])
+            @ self.wheel
+        )
         turned = self.wheel[3:] if whirl else np.eye(6, count)[3:]
         d -= turned.T @ across(np.array([0, SPIN * speed, 0])) @ turned
         bandwidth = 2 * np.pi * 0.05 if loop else 0.0
@@ -104,12 +111,19 @@ class Bench:
 
     def response(self, w):
         """The line of sight over forces and torques on the wheel."""
-        return self.sight @ np.linalg.solve(self.k + 1j * w * self.d - w * w * self.m, self.wheel.T.astype(complex))
+        return self.sight @ np.linalg.solve(
+            self.k + 1j * w * self.d - w * w * self.m, self.wheel.T.astype(complex)
+        )
 
     def poles(self):
         """Frequencies (Hz) and damping ratios above 1 Hz."""
         n = len(self.m)
-        a = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(self.m, self.k), -np.linalg.solve(self.m, self.d)]])
+        a = np.block(
+            [
+                [np.zeros((n, n)), np.eye(n)],
+                [-np.linalg.solve(self.m, self.k), -np.linalg.solve(self.m, self.d)],
+            ]
+        )
         found = np.linalg.eigvals(a)
         found = found[(found.imag > 0) & (np.abs(found) > 2 * np.pi)]
         found = found[np.argsort(np.abs(found))]
@@ -117,7 +131,7 @@ class Bench:
 
 
 def line(order, force, torque, speed, sense=1.0, **options):
-    """The amplitudes about x and y of a force and of a torque at -90 deg about y from it, which turn about y (of the sense -1: about -y)."""
+    """The amplitudes about x and y of a force, and a torque 90 deg behind, turning about y (sense -1: -y)."""
     turning = np.array([1, 0, 0]) - 1j * sense * np.cross([0, 1, 0], [1, 0, 0])
     load = np.r_[force * turning, torque * turning * -1j * sense] * speed**2
     return np.abs(Bench(speed, **options).response(order * abs(speed)) @ load)
@@ -129,7 +143,10 @@ LINES = [(1.0, 3.6e-6, 1.2e-7), (2.0, 4.0e-7, 1.5e-8), (0.6, 2.0e-7, 0.0)]
 def worst(axis, low, high, **options):
     """Speed (Hz) and amplitude of the maximum of the first harmonic between two speeds."""
     found = minimize_scalar(
-        lambda f: -line(*LINES[0], 2 * np.pi * f, **options)[axis], bounds=(low, high), method="bounded", options={"xatol": 1e-11}
+        lambda f: -line(*LINES[0], 2 * np.pi * f, **options)[axis],
+        bounds=(low, high),
+        method="bounded",
+        options={"xatol": 1e-11},
     )
     return found.x, -found.fun
 
@@ -140,12 +157,36 @@ def published():
     near = lambda found, expected, tolerance: np.testing.assert_allclose(found, expected, rtol=tolerance)  # noqa: E731
     whirl = Bench(speed, held=True).poles()
     near(whirl[0], [9.184641639753, 0.03356335789], 1e-9)
-    near(Bench(0, held=True).poles()[:, 0], [22.12972961853, 22.24835864, 22.26491009, 30.00120334, 30.00265112, 80.03381157,
-                                             108.4340880, 146.8252069], 1e-8)
+    near(
+        Bench(0, held=True).poles()[:, 0],
+        [
+            22.12972961853,
+            22.24835864,
+            22.26491009,
+            30.00120334,
+            30.00265112,
+            80.03381157,
+            108.4340880,
+            146.8252069,
+        ],
+        1e-8,
+    )
     four = lambda w, **options: np.abs(Bench(speed, held=True, **options).response(w))[:, [0, 2, 3, 5]]  # noqa: E731
-    near(four(2 * np.pi * 100)[1], [9.399321489439e-9, 9.038741279803e-9, 6.372563168939e-9, 6.504795306311e-9], 1e-10)
-    near(four(2 * np.pi * 100, mounted=False)[0], [3.548266139007e-9, 1.137351953440e-7, 1.625645714079e-6, 8.330838135167e-8], 1e-10)
-    amplitudes = [[4.871041561760e-10, 1.428522810269e-8], [5.773017958382e-9, 4.941219661550e-10], [1.945133359095e-9, 1.516293298749e-8]]
+    near(
+        four(2 * np.pi * 100)[1],
+        [9.399321489439e-9, 9.038741279803e-9, 6.372563168939e-9, 6.504795306311e-9],
+        1e-10,
+    )
+    near(
+        four(2 * np.pi * 100, mounted=False)[0],
+        [3.548266139007e-9, 1.137351953440e-7, 1.625645714079e-6, 8.330838135167e-8],
+        1e-10,
+    )
+    amplitudes = [
+        [4.871041561760e-10, 1.428522810269e-8],
+        [5.773017958382e-9, 4.941219661550e-10],
+        [1.945133359095e-9, 1.516293298749e-8],
+    ]
     for own, expected in zip(LINES, amplitudes, strict=True):
         near(line(*own, speed, held=True), expected, 1e-10)
     near(worst(0, 21, 23, held=True), [22.057515050, 9.361465884e-8], 1e-6)
@@ -168,6 +209,11 @@ if __name__ == "__main__":
     print("without the loop, which is slow and sampled in flexsc")
     for own in [*LINES, (2.0, 0.0, 1.5e-8)]:
         print("line", own, line(*own, at, **free), "of a wheel about -y", line(*own, -at, sense=-1.0, **free))
-        print("  wrong: no whirl", line(*own, at, whirl=False, **free), "load of the other sense", line(*own, at, sense=-1.0, **free))
+        print(
+            "  wrong: no whirl",
+            line(*own, at, whirl=False, **free),
+            "load of the other sense",
+            line(*own, at, sense=-1.0, **free),
+        )
     print("wrong: load on the hub", line(*LINES[0], at, mounted=False, **free))
     print("worst", worst(0, 21, 23, **free), worst(1, 78, 82, **free), worst(1, 21, 24, **free))

@@ -35,7 +35,9 @@ def bench(hub: float = 60.0) -> flexsc.Scenario:
     )
     return flexsc.Scenario(
         duration=1.0,
-        spacecraft=Spacecraft(mass=hub, inertia=np.diag([hub / 10] * 3).tolist(), points=[NamedPoint(name="hub")]),
+        spacecraft=Spacecraft(
+            mass=hub, inertia=np.diag([hub / 10] * 3).tolist(), points=[NamedPoint(name="hub")]
+        ),
         appendage=[unit],
         line_of_sight=[LineOfSight(point="hub", period=0.01)],
         law=AttitudeLaw(period=0.1, bandwidth=0.1),

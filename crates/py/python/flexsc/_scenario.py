@@ -208,10 +208,10 @@ class Scenario:
         return modes(self._native)
 
     def poles(self, wheel_speed: float | None = None) -> dict[str, npt.NDArray[np.float64]]:
-        """Return the poles of a spacecraft whose wheels turn with a `mount` or another part: `flexsc modes --speed`.
+        """Return the poles of a spacecraft whose wheels turn on a `mount` or another part.
 
-        Without the loop, `frequency` (rad/s) and `damping` (ratio) of each oscillation in arrays, the modes that
-        whirl among them; empty without `points` of the wheels on such a part.
+        Without the loop, `frequency` (rad/s) and `damping` (ratio) of each oscillation in arrays, whirl
+        included; empty without `points` of the wheels on such a part.
 
         Args:
             wheel_speed: Speed of these wheels (rad/s); if omitted, each has that of the start.
@@ -690,8 +690,8 @@ class Scenario:
     ) -> NoiseSpectrum:
         """Return the noise of the scenario's loop, exact from its linear model: `flexsc spectrum`.
 
-        The noise is that of the sensors, of their rounding, of random torques and of machines. Limits and steady
-        disturbances are left out; the body is about its target at rest. The lines of unbalanced wheels are
+        The noise is that of the sensors, of their rounding, of random torques and of machines. Limits and
+        steady disturbances are left out; the body is about its target at rest. The lines of unbalanced wheels are
         over their speed, with the same indices over windows.
 
         Args:
@@ -787,7 +787,8 @@ class Scenario:
             requirement: A requirement of the scenario, by its name, in place of a metric.
             margin: A stability margin in place of a metric, the least of all loops: `modulus`, `disk`,
                 `gain`, `phase` or `delay`.
-            signal: An output of the linear loop in place of a metric, such as `line_of_sight0_x`: its rms under
+            signal: An output of the linear loop in place of a metric, such as `line_of_sight0_x`: its rms
+                under
                 the imbalance of the wheels at their worst speed.
             window: Length (s) of windows within which the signal moves against its mean.
             loop: The point at which the loops are opened for a margin.

@@ -415,7 +415,7 @@ class Client:
         self._reply([_QUANTITIES.index(word) for word in quantities], each)
 
     def hold(self) -> None:
-        """Answer the cycle without commands: those in force stay, and the run goes on as if the cycle had not been.
+        """Answer the cycle without commands: those in force stay, as if the cycle had not been.
 
         >>> client.hold()
 
