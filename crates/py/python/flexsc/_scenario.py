@@ -691,8 +691,8 @@ class Scenario:
         """Return the noise of the scenario's loop, exact from its linear model: `flexsc spectrum`.
 
         The noise is that of the sensors, of their rounding, of random torques and of machines. Limits and
-        steady disturbances are left out; the body is about its target at rest. The lines of unbalanced wheels are
-        over their speed, with the same indices over windows.
+        steady disturbances are left out; the body is about its target at rest. The lines of unbalanced wheels
+        are over their speed, with the same indices over windows.
 
         Args:
             signals: Names of outputs, such as `roll`, `roll_rate`, `command_roll`, `mode0_displacement` and
