@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::reader_units::number;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::mirror_states::MirrorOutput;
 use super::motion::OutputRow;
@@ -82,7 +82,11 @@ impl LineSolver {
     ) -> Result<LoadedMotion, ConfigError> {
         let frequency = turns.load();
         let undamped = || undamped(frequency);
-        let entry = |row: usize, load: usize| Complex::new(loads[load].cosine[row], -loads[load].sine[row]);
+        // A load has no part in states of exposures.
+        let part = |column: &DVector<f64>, row: usize| column.get(row).copied().unwrap_or(0.0);
+        let entry = |row: usize, load: usize| {
+            Complex::new(part(&loads[load].cosine, row), -part(&loads[load].sine, row))
+        };
         let forcing = DMatrix::from_fn(parts.body.a.nrows(), loads.len(), entry);
         let amplitudes = self.body.states(Complex::new(0.0, frequency), &forcing).ok_or_else(undamped)?;
         let alone = ForcedMotion { amplitudes, frequency };
