@@ -39,20 +39,20 @@ TYPES = "tests/python/test_types.py"
 WITHOUT = ("-k", "not matplotlib_alone")
 # Whether the wheel is in the environment, or could not be built or installed.
 INSTALLED = threading.Event()
-# So many inputs, the same on every machine: about 3.5 s each.
+# So many inputs, the same on every machine: about 2 s each.
 FUZZED = {
-    "scenarios": "570",
-    "structures": "1250",
-    "logs": "250",
-    "arguments": "360",
-    "live": "800",
-    "parts": "340",
-    "environment": "2000",
-    "conditions": "700",
-    "points": "1200",
-    "commands": "220",
-    "lockstep": "130",
-    "fmus": "400",
+    "scenarios": "340",
+    "structures": "750",
+    "logs": "150",
+    "arguments": "210",
+    "live": "480",
+    "parts": "200",
+    "environment": "1200",
+    "conditions": "420",
+    "points": "720",
+    "commands": "130",
+    "lockstep": "70",
+    "fmus": "240",
 }
 # Tests wait now and then: so many at a time, three on two cores.
 THREADS = (os.cpu_count() or 1) + 1
