@@ -76,7 +76,7 @@ fn measure(name: &str, mut pass: impl FnMut() -> f64) {
 
 fn main() {
     let wide = scenario(MODES, 20, "");
-    let speeds: Vec<f64> = (1..=100).map(|step| 6.28 * f64::from(step)).collect();
+    let speeds: Vec<f64> = (1..=100).map(|step| std::f64::consts::TAU * f64::from(step)).collect();
     measure("100 speeds, 20 orders, 50 modes, 2 lines of sight", || {
         let imbalance = WheelImbalance::from_scenario(&wide).expect("wheels").expect("imbalance");
         let lines = LineLoop::from_scenario(&wide).expect("a loop");

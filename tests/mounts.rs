@@ -252,6 +252,9 @@ fn wheel_lines(changes: &[(&str, &str)]) -> [f64; 2] {
     [0, 1].map(|about| found[0].outputs[about].direct.amplitude)
 }
 
+/// Name, replacements in the bench, and amplitudes about x and y (rad).
+type Case<'a> = (&'a str, &'a [(&'a str, &'a str)], [f64; 2]);
+
 /// The right model, and those that leave something out, by the same keys. Source: `tests/golden/optics.py`.
 #[test]
 fn wrong_models_give_other_lines() {
@@ -259,7 +262,7 @@ fn wrong_models_give_other_lines() {
     let harmonic = "imbalance = { harmonics = [{ order = 2.0, torque = 1.5e-8 }] }";
     let imbalance = "imbalance = { static = [3.6e-6, 0, 0], dynamic = [1.2e-7, 0, 0], phase = \"-90 deg\" }";
     let at_rotor = "phase = \"-90 deg\", point = \"rotor\" }";
-    let cases: [(&str, &[(&str, &str)], [f64; 2]); 5] = [
+    let cases: [Case<'_>; 5] = [
         ("whirl", &[], [4.870_208_720_337_7e-10, 1.428_703_788_536_1e-08]),
         (
             "about -y",

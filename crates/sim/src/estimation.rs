@@ -159,7 +159,9 @@ impl Estimation {
         estimates: &mut [StateEstimate],
     ) {
         if sensors.field_is_stale(now) {
-            estimates.iter_mut().for_each(|estimate| estimate.field_rate = 0.0);
+            for estimate in estimates.iter_mut() {
+                estimate.field_rate = 0.0;
+            }
         }
         if sensors.is_continuous() {
             let (truth, angles) = (plant.truth(), plant.sensed_angles(&self.origin));

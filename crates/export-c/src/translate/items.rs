@@ -76,6 +76,11 @@ impl<'a> Program<'a> {
         Ok(program)
     }
 
+    /// Returns the name of the only type of floating-point numbers.
+    pub(super) fn real(&self) -> &'static str {
+        if self.is_single { "f32" } else { "f64" }
+    }
+
     /// Returns the type of the bits of a number.
     pub(super) fn bits_kind(&self) -> ValueKind {
         ValueKind::Integer(if self.is_single { IntegerKind::U32 } else { IntegerKind::U64 })

@@ -144,7 +144,7 @@ impl Program<'_> {
                 }
                 if path.path.segments.len() == 1 {
                     match name.as_str() {
-                        "f64" | "f32" => return Ok(ValueKind::F64),
+                        own if own == self.real() => return Ok(ValueKind::F64),
                         "bool" => return Ok(ValueKind::Bool),
                         _ => {}
                     }
