@@ -159,6 +159,7 @@ def test_a_closed_loop_moves_as_the_simulated_one(name: str, changes: dict[str, 
 
     def moved(state: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         motion = [state]
+        assert closed.period is not None
         for _ in range(int(40.0 / closed.period + 1e-9)):
             motion.append(closed.a @ motion[-1])
         return np.array(motion)[:, : seen.shape[1]] @ seen.T
