@@ -6,10 +6,9 @@ use std::path::Path;
 use std::{env, fs, io};
 
 /// Files that have a text of their own in single precision, with the name there.
-const OWN: [(&str, &str); 5] = [
+const OWN: [(&str, &str); 4] = [
     ("binary64", "binary32"),
     ("inverse_trigonometry", "inverse_trigonometry"),
-    ("maths", "maths"),
     ("square_root", "square_root"),
     ("trigonometry", "trigonometry"),
 ];

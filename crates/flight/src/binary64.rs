@@ -6,6 +6,15 @@ pub const FRACTION_MASK: u64 = 0x000f_ffff_ffff_ffff;
 /// Bit of the significand before the point, which normal numbers do not store.
 pub const IMPLICIT_BIT: u64 = 0x0010_0000_0000_0000;
 
+/// Biased exponent of 1.
+pub const ONE_EXPONENT: u32 = 1023;
+
+/// Biased exponent from which on every number is an integer.
+pub const INTEGER_EXPONENT: u32 = 1023 + 52;
+
+/// Greatest number below 1/2.
+pub const BELOW_HALF: f64 = 0.499_999_999_999_999_94;
+
 /// Upper word of infinity and, as the least one, of NaN.
 pub const INFINITY_WORD: u32 = 0x7ff0_0000;
 

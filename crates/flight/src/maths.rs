@@ -1,15 +1,6 @@
 //! Least and greatest of two numbers, limits, and rounding to integers.
 
-use crate::binary64::{FRACTION_MASK, biased_exponent};
-
-/// Biased exponent of 1.
-const ONE_EXPONENT: u32 = 1023;
-
-/// Biased exponent from which on every number is an integer.
-const INTEGER_EXPONENT: u32 = 1023 + 52;
-
-/// Greatest number below 1/2.
-const BELOW_HALF: f64 = 0.499_999_999_999_999_94;
+use crate::binary64::{BELOW_HALF, FRACTION_MASK, INTEGER_EXPONENT, ONE_EXPONENT, biased_exponent};
 
 /// Returns the lesser of a and b: the other one if one is NaN, and a if both are zeros of any sign.
 #[inline]

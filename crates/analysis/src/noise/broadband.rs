@@ -73,7 +73,7 @@ pub(super) fn broadband(
         let mut found = SourceMotion::default();
         let mut densities = Vec::with_capacity(nodes.len());
         for node in &nodes {
-            let own = integral.of_source(source, output, node.frequency, &node.responses);
+            let own = integral.source_power(source, output, node.frequency, &node.responses);
             densities.push(own.density);
             found.sample_variance += node.weight * own.sampled;
             for (frequency_rad_s, power) in own.lines {
@@ -109,7 +109,7 @@ struct Integral<'a> {
 
 impl Integral<'_> {
     /// Returns the motion of an output under a source from the responses at a frequency.
-    fn of_source(
+    fn source_power(
         &self,
         source: &BroadbandSource<'_>,
         output: usize,
@@ -177,7 +177,7 @@ impl Integral<'_> {
             let responses = self.transfer.at(frequency)?;
             for (index, power) in powers.iter_mut().enumerate() {
                 let (output, source) = (index / self.sources.len(), index % self.sources.len());
-                let own = self.of_source(&self.sources[source], output, frequency, &responses);
+                let own = self.source_power(&self.sources[source], output, frequency, &responses);
                 let all: f64 = own.lines.iter().map(|(_, power)| power).sum();
                 power[0] += weight * all;
                 power[1] += (weight - less) * all;
@@ -225,7 +225,7 @@ impl Integral<'_> {
                 distance *= GRADE;
             }
         };
-        let (direct, aliases) = self.transfer.met(most);
+        let (direct, aliases) = self.transfer.resonances_below(most);
         for [frequency, width] in direct {
             around(frequency, width, frequency * (1.0 - 1.0 / NEAR));
         }

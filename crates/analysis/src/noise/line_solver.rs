@@ -112,12 +112,13 @@ impl LineSolver {
         (rows, outputs): (&[OutputRow], &[usize]),
         turns: &LineFrequencies,
     ) -> Vec<Amplitudes> {
-        let torques = self.of_each(motion, |piece| &piece.torque);
+        let torques = self.held_values(motion, |piece| &piece.torque);
         let has_commands = outputs.iter().any(|output| matches!(rows[*output], OutputRow::Command(_)));
-        let commands = if has_commands { self.of_each(motion, |piece| &piece.command) } else { Vec::new() };
+        let commands =
+            if has_commands { self.held_values(motion, |piece| &piece.command) } else { Vec::new() };
         let mut found = Vec::with_capacity(turns.frequencies.len());
         for (place, own) in turns.frequencies.iter().enumerate() {
-            let torque = turns.of_pieces(&motion.pieces, &torques, *own);
+            let torque = turns.held_amplitudes(&motion.pieces, &torques, *own);
             let body = if (own * turns.period).abs() < TAU * SLOW {
                 None
             } else {
@@ -128,7 +129,7 @@ impl LineSolver {
                 body => body,
             };
             let commanded = if has_commands {
-                turns.of_pieces(&motion.pieces, &commands, *own)
+                turns.held_amplitudes(&motion.pieces, &commands, *own)
             } else {
                 Amplitudes::zeros(0, 0)
             };
@@ -150,8 +151,8 @@ impl LineSolver {
         motion: &LoadedMotion,
         (rows, outputs): (&[OutputRow], &[usize]),
     ) -> DMatrix<f64> {
-        let bodies = self.of_each(motion, |piece| &piece.body);
-        let commands = self.of_each(motion, |piece| &piece.command);
+        let bodies = self.held_values(motion, |piece| &piece.body);
+        let commands = self.held_values(motion, |piece| &piece.command);
         let is_sample = |place: &usize| motion.pieces[*place].from % self.period_rows.step == 0;
         let sampled: Vec<usize> = (0..motion.pieces.len()).filter(is_sample).collect();
         let square = |output: usize, load: usize| {
@@ -167,8 +168,8 @@ impl LineSolver {
         DMatrix::from_fn(outputs.len(), motion.change.ncols(), square)
     }
 
-    /// Returns what a piece has, for each piece of a motion.
-    fn of_each(&self, motion: &LoadedMotion, of: fn(&Piece) -> &DMatrix<f64>) -> Vec<Amplitudes> {
+    /// Returns the values that each piece of a motion holds, such as torques: a row for each, and a column for each load.
+    fn held_values(&self, motion: &LoadedMotion, of: fn(&Piece) -> &DMatrix<f64>) -> Vec<Amplitudes> {
         let both = self.period_rows.pieces.iter().zip(&motion.pieces);
         both.map(|(own, forced)| of(own).map(Complex::from) * &motion.change + joined(of(forced))).collect()
     }
@@ -213,7 +214,7 @@ impl LineFrequencies {
     }
 
     /// Returns the amplitudes at a frequency of values that are constant in each piece.
-    fn of_pieces(&self, pieces: &[Piece], values: &[Amplitudes], frequency: f64) -> Amplitudes {
+    fn held_amplitudes(&self, pieces: &[Piece], values: &[Amplitudes], frequency: f64) -> Amplitudes {
         let (rows, columns) = values.first().map_or((0, 0), Amplitudes::shape);
         let mut sum = Amplitudes::zeros(rows, columns);
         for (piece, value) in pieces.iter().zip(values) {

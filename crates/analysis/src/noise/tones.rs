@@ -75,7 +75,7 @@ impl ToneLoop<'_> {
         let lines = self.source.lines;
         let met = lines.harmonics.iter().flat_map(|harmonic| {
             let multiple = lines.multiple(harmonic);
-            let (direct, aliases) = self.transfer.met(to * multiple);
+            let (direct, aliases) = self.transfer.resonances_below(to * multiple);
             let all = direct.into_iter().chain(aliases.into_iter().map(|(alias, _)| alias));
             let met = all.map(move |[at, _]| at / multiple);
             met.filter(|at| (from..to).contains(at)).take(MOST_RESONANCES)

@@ -81,7 +81,7 @@ impl<'a> LoopTransfer<'a> {
 
     /// Returns the resonances (frequency, half width, rad/s) that a load up to a frequency meets: of body and loop, and then as aliases of
     /// the loop, each with the multiple of the loop's rate beside which it lies.
-    pub fn met(&self, highest: f64) -> (Vec<Resonance>, Vec<(Resonance, f64)>) {
+    pub fn resonances_below(&self, highest: f64) -> (Vec<Resonance>, Vec<(Resonance, f64)>) {
         let (body, looped) = self.resonances.split_at(self.of_body);
         let folded = |frequency: f64| (frequency - self.turn * libm::round(frequency / self.turn)).abs();
         // Those of the modes are narrow, and hardly answer at their aliases.

@@ -24,7 +24,7 @@ pub struct OutputAccuracy {
 }
 
 /// Returns the accuracy of each output over the calls of a run; nothing in double precision.
-pub fn of_single(scenario: &Scenario, vectors: &[CallVector]) -> Vec<OutputAccuracy> {
+pub fn output_accuracies(scenario: &Scenario, vectors: &[CallVector]) -> Vec<OutputAccuracy> {
     if scenario.flight_precision.is_double() {
         return Vec::new();
     }
@@ -34,7 +34,7 @@ pub fn of_single(scenario: &Scenario, vectors: &[CallVector]) -> Vec<OutputAccur
         return Vec::new();
     };
     let calls = system.calls();
-    let mut all: Vec<Vec<OutputAccuracy>> = calls.iter().map(of_call).collect();
+    let mut all: Vec<Vec<OutputAccuracy>> = calls.iter().map(untested_outputs).collect();
     for vector in vectors {
         let outputs = system.call(vector.call, vector.now, &vector.inputs);
         let mut place = 0;
@@ -53,7 +53,7 @@ pub fn of_single(scenario: &Scenario, vectors: &[CallVector]) -> Vec<OutputAccur
 }
 
 /// Returns the accuracies of the outputs of a function, before its first call.
-fn of_call(call: &CallLayout) -> Vec<OutputAccuracy> {
+fn untested_outputs(call: &CallLayout) -> Vec<OutputAccuracy> {
     let each = call.outputs.iter().map(|channel| OutputAccuracy {
         function: call.name,
         output: channel.name.clone(),

@@ -61,7 +61,7 @@ fn function(plan: &Plan<'_>, call: &CallLayout) -> Value {
         "period_s": call.period,
         "inputs": list(&call.inputs),
         "outputs": list(&call.outputs),
-        "run_0": start_values::of_call(plan, call),
+        "run_0": start_values::start_inputs(plan, call),
     })
 }
 

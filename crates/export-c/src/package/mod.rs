@@ -174,7 +174,7 @@ pub fn export(
     let choices = choices::constant_choices(&system);
     let translation =
         translate_pruned(&sources, &roots, prefix, &choices).map_err(ExportError::Translation)?;
-    let accuracy = accuracy::of_single(scenario, &vectors);
+    let accuracy = accuracy::output_accuracies(scenario, &vectors);
     let hashes: Vec<(u64, u64)> = HASHED_CYCLES.into_iter().zip(self_tests(&system, HASHED_CYCLES)).collect();
     let header = in_precision(header::header(&plan, &translation, &state));
     let source = in_precision(source::source(&plan, &translation, &functions));

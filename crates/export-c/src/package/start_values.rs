@@ -56,7 +56,7 @@ pub fn definition(plan: &Plan<'_>, text: &mut String) {
 }
 
 /// Returns the inputs of a function in run 0 as JSON; null of all but the start.
-pub fn of_call(plan: &Plan<'_>, call: &CallLayout) -> Value {
+pub fn start_inputs(plan: &Plan<'_>, call: &CallLayout) -> Value {
     if call.name != START || plan.run_start.is_none() {
         return Value::Null;
     }

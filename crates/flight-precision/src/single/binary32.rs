@@ -6,6 +6,15 @@ pub const FRACTION_MASK: u32 = 0x007f_ffff;
 /// Bit of the significand before the point, which normal numbers do not store.
 pub const IMPLICIT_BIT: u32 = 0x0080_0000;
 
+/// Biased exponent of 1.
+pub const ONE_EXPONENT: u32 = 127;
+
+/// Biased exponent from which on every number is an integer.
+pub const INTEGER_EXPONENT: u32 = 127 + 23;
+
+/// Greatest number below 1/2.
+pub const BELOW_HALF: f32 = 0.499_999_97;
+
 /// Bits of infinity and, as the least ones, of NaN.
 pub const INFINITY_BITS: u32 = 0x7f80_0000;
 
