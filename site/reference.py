@@ -239,7 +239,7 @@ GROUPS = {
     "Scenarios and runs": "Scenario Result Answer Samples Topic Metrics Simulator Simulators Snapshot "
     "Quantities Plan Log read_log examples schema metrics topics",
     "Campaigns and searches": "campaign sweep compare evaluate estimate read_campaign Table "
-    "CampaignAnswer Comparison Row optimise explore Explorer sensitivities Sensitivities WorstCase "
+    "CampaignAnswer Comparison Row optimise Optimum explore Explorer sensitivities Sensitivities WorstCase "
     "PointingBudget IndexBudget BudgetLevel",
     "Linear models, margins and noise": "Linear Signal CommonMargins LoopMargins StabilityMargins "
     "NoiseSpectrum OutputNoise MirrorSensitivity SettlingTime WheelSpectrum WheelLines OutputBound "

@@ -75,7 +75,7 @@ if TYPE_CHECKING:
     from flexsc._linear import Linear
     from flexsc._margins import CommonMargins
     from flexsc._noise import WheelLines, WheelSpectrum
-    from flexsc._optimisation import optimise
+    from flexsc._optimisation import Optimum, optimise
     from flexsc._result import Detail
     from flexsc._sensitivity import Sensitivities, sensitivities
     from flexsc._signal import Signal
@@ -137,6 +137,7 @@ __all__ = [
     "Metrics",
     "MirrorSensitivity",
     "NoiseSpectrum",
+    "Optimum",
     "OutputBound",
     "OutputNoise",
     "Plan",
@@ -212,7 +213,7 @@ _LATER = {
         "_linear": "Linear",
         "_margins": "CommonMargins",
         "_noise": "WheelLines WheelSpectrum",
-        "_optimisation": "optimise",
+        "_optimisation": "Optimum optimise",
         "_sensitivity": "Sensitivities sensitivities",
         "_signal": "Signal",
         "results": "BudgetLevel IndexBudget LoopMargins MirrorSensitivity NoiseSpectrum OutputBound "

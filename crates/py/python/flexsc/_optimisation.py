@@ -129,3 +129,6 @@ def _limits(
             f"bounds must be a smallest and a largest value of each of {len(keys)} keys, got {bounds!r}"
         )
     return found
+
+
+Optimum.__module__ = "flexsc"
