@@ -15,7 +15,7 @@ use crate::traces::flown;
 use crate::util::Dir;
 
 /// Mirror of 300 Hz with a loop of 1 kHz.
-const MIRROR: &str = "
+pub const MIRROR: &str = "
 [line_of_sight.mirror]
 frequency = \"300 Hz\"
 damping = 0.6

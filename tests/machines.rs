@@ -2,6 +2,8 @@
 
 use serde_json::Value;
 
+use crate::fine_mirror::MIRROR;
+use crate::mounts::{MOUNT, WHEELS};
 use crate::optics::BENCH;
 use crate::util::Dir;
 
@@ -62,6 +64,32 @@ fn broadband_forces_move_the_line_of_sight_as_covariances_say() {
             }
             agree("cumulative", number(last), over_time[about], 1e-7);
         }
+    }
+}
+
+/// The wheel on its mount at 50 Hz, whose rotor whirls, and a mirror behind the line of sight. Source: `tests/golden/broadband.py`, which
+/// has the published numbers of a bench with a continuous law. The mount makes broadband forces worse, and the mirror slow ones better.
+#[test]
+fn broadband_forces_pass_a_mount_and_a_mirror() {
+    let dir = Dir::new();
+    let imbalance = WHEELS.find("imbalance").expect("an imbalance");
+    let text = bench(0.01, DENSITY)
+        .replace("arrangement = \"orthogonal\"\ninertia = 1e-7", &WHEELS[..imbalance])
+        .replace("name = \"wheel unit\"\n", &format!("name = \"wheel unit\"\n{MOUNT}"))
+        .replacen(
+            "[[4.2, 0, 0], [0, 3.9, 0], [0, 0, 4.8]]",
+            "[[4.2016, 0, 0], [0, 3.9016, 0], [0, 0, 4.8016]]",
+            1,
+        )
+        .replace("[law.attitude]", &format!("{MIRROR}[law.attitude]"));
+    dir.write("bench.toml", text);
+    let names = ["line_of_sight0_x", "line_of_sight0_y"];
+    let before = names.map(|name| format!("{name}_before_mirror"));
+    let all = format!("{},{},{},{}", before[0], before[1], names[0], names[1]);
+    let report = dir.run(&format!("spectrum bench.toml --signal {all} --json")).exits(0).json();
+    let golden = [6.348_828_422_586e-8, 6.768_652_838_958e-8, 1.629_294_986_759e-8, 1.674_251_500_569e-8];
+    for (place, expected) in golden.into_iter().enumerate() {
+        agree(&all, number(&report["outputs"][place]["rms"]), expected, 1e-6);
     }
 }
 
@@ -164,6 +192,7 @@ fn machines_that_do_not_hold_are_refused() {
             "upper = \"2 Hz\"",
             "`disturbance[0].density.upper` must be above `lower`",
         ),
+        (DENSITY, "lower = \"5 Hz\"", "lower = 1e-7", "`disturbance[0].density.lower` must be at least"),
         (DENSITY, ", upper = \"120 Hz\"", "", "`disturbance[0].density.upper` must be given"),
         (
             DENSITY,

@@ -88,6 +88,12 @@ impl<'a> LineLoop<'a> {
         output_index(&self.signals, name)
     }
 
+    /// Returns the largest number of lines of an output under a load.
+    pub(super) fn line_count(&self, output: usize) -> usize {
+        let before = self.solver.turns(0.0).frequencies.len();
+        before * self.mirror(output).map_or(1, |_| MirrorOutput::LINES)
+    }
+
     /// Returns the load of a torque that turns about one axis of the actuators.
     pub fn torque(&self, axis: usize) -> SineLoad {
         let cosine = self.parts.body.b.column(axis).into_owned();
