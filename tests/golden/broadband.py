@@ -11,7 +11,7 @@ from functools import cache
 from itertools import pairwise
 
 import numpy as np
-from optics import Bench
+from optics import SPIN, Bench, across
 from scipy.linalg import expm, solve_discrete_lyapunov
 from scipy.optimize import minimize_scalar
 
@@ -39,9 +39,9 @@ def bench():
 def system():
     """The body with the filters: its rates, its noise, its torques, and the line of sight."""
     m, d, k, loads, sight = bench()
-    across = m[3:, :3] @ np.linalg.inv(m[:3, :3])
-    inverse = np.linalg.inv(m[3:, 3:] - across @ m[:3, 3:])
-    forces = inverse @ (loads[3:] - across @ loads[:3])
+    carried = m[3:, :3] @ np.linalg.inv(m[:3, :3])
+    inverse = np.linalg.inv(m[3:, 3:] - carried @ m[:3, 3:])
+    forces = inverse @ (loads[3:] - carried @ loads[:3])
     a, noise, torque = np.zeros((24, 24)), np.zeros((24, 3)), np.zeros((24, 3))
     a[:6, 6:12] = np.eye(6)
     a[6:12, :6], a[6:12, 6:12] = -inverse @ k[3:, 3:], -inverse @ d[3:, 3:]
@@ -124,9 +124,9 @@ def body():
     """The body without filters: its rates, its torques, the line of sight, and the columns of its loads."""
     m, _, _, loads, _ = bench()
     a, _, torque, sight = system()
-    across = m[3:, :3] @ np.linalg.inv(m[:3, :3])
-    inverse = np.linalg.inv(m[3:, 3:] - across @ m[:3, 3:])
-    columns = np.vstack([np.zeros((6, 6)), inverse @ (loads[3:] - across @ loads[:3])])
+    carried = m[3:, :3] @ np.linalg.inv(m[:3, :3])
+    inverse = np.linalg.inv(m[3:, 3:] - carried @ m[:3, 3:])
+    columns = np.vstack([np.zeros((6, 6)), inverse @ (loads[3:] - carried @ loads[:3])])
     return a[:12, :12], torque[:12], sight[:, :12], columns
 
 
@@ -208,8 +208,8 @@ def mounted(sampled, *, held=False):
     m, d, k = own.m[first:, first:], own.d[first:, first:], own.k[first:, first:]
     loads = own.wheel.T[first:]
     if not held:
-        across = own.m[3:, :3] @ np.linalg.inv(own.m[:3, :3])
-        m, loads = m - across @ own.m[:3, 3:], loads - across @ own.wheel.T[:3]
+        carried = own.m[3:, :3] @ np.linalg.inv(own.m[:3, :3])
+        m, loads = m - carried @ own.m[:3, 3:], loads - carried @ own.wheel.T[:3]
     inverse, n = np.linalg.inv(m), len(m)
     hub = slice(3 - first, 6 - first)
     size = 2 * n + 12
@@ -225,8 +225,22 @@ def mounted(sampled, *, held=False):
     sight = np.hstack([own.sight[:, first:], np.zeros((2, n + 12))])
     gain = np.zeros((3, size))
     gain[:, hub] = HUB * BANDWIDTH**2
-    gain[:, n + hub.start : n + hub.stop] = 1.4 * BANDWIDTH * HUB
+    # The law adds the gyroscopic torque of the wheel.
+    gain[:, n + hub.start : n + hub.stop] = 1.4 * BANDWIDTH * HUB + momentum()
     return a, noise, torque, sight, gain
+
+
+def momentum():
+    """The product with the momentum of the wheel."""
+    return across(np.array([0, SPIN * WHIRL, 0]))
+
+
+def settled(flow, added):
+    """The covariance after many periods, by doubling: states that nothing moves are no matter."""
+    for _ in range(60):
+        added = added + flow @ added @ flow.T
+        flow = flow @ flow
+    return added
 
 
 def behind_mirror(period, *, held=False):
@@ -262,7 +276,7 @@ def behind_mirror(period, *, held=False):
         jump = sample @ exposure if period and step == 0 else exposure
         whole = flow @ jump @ whole
         covariance = flow @ (jump @ covariance @ jump.T + reading) @ flow.T + added
-    covariance = solve_discrete_lyapunov(whole, covariance)
+    covariance = settled(whole, covariance)
     at, weights = np.polynomial.legendre.leggauss(12)
     before = np.hstack([sight, np.zeros((2, 13))])
     squares = np.zeros((2, 2))

@@ -32,14 +32,14 @@ const NEAR: f64 = 2.0;
 /// Difference of the two rules, relative to the whole, below which an interval counts: the finer one is then far closer.
 const DIFFERENCE: f64 = 1e-6;
 /// Part of what the measurements see by all aliases of resonances, below which one has no breaks of its own.
-const SMALL: f64 = 1e-6;
+const SMALL: f64 = 1e-8;
 /// Largest number of halvings of an interval, and of intervals.
 const HALVINGS: usize = 12;
 const MOST_INTERVALS: usize = 4000;
 /// Largest number of lines over all nodes, outputs and loads.
 const MOST_LINES: usize = 30_000_000;
-/// Sum of the differences of the two rules, relative to the whole, up to which an integral is an answer.
-const TOLERATED: f64 = 1e-3;
+/// Sum of the differences of the two rules, relative to the whole, up to which an integral is an answer: the finer one is far closer.
+const TOLERATED: f64 = 0.05;
 
 /// Broadband load at a point of the body.
 pub(super) struct BroadbandSource<'a> {

@@ -18,6 +18,8 @@ pub type Resonance = [f64; 2];
 const APART: f64 = 0.5;
 /// Difference from the frequency of a mode as an alias, relative, below which a resonance of the loop is that mode.
 const OF_MODE: f64 = 0.1;
+/// Half width of a pole, relative to its frequency, below which it is not damped.
+const UNDAMPED: f64 = 1e-6;
 /// Largest number of aliases of resonances.
 const MOST_FOLDS: usize = 400;
 
@@ -65,11 +67,15 @@ impl<'a> LoopTransfer<'a> {
             [angle.abs() / opened.period, libm::log(size).abs() / opened.period]
         });
         let is_above = |[frequency, _]: &[f64; 2]| *frequency > 0.0;
+        let turn = TAU / opened.period;
+        // A slow motion that nothing but the law damps, such as a nutation, has no resonance in the loop.
+        let is_damped =
+            |[frequency, width]: &[f64; 2]| *width > UNDAMPED * frequency || *frequency > 0.5 * turn;
         let of_body = eigenvalues(&lines.parts.body.a)
             .unwrap_or_default()
             .into_iter()
             .map(|pole| [pole.im.abs(), pole.re.abs()]);
-        let of_body: Vec<[f64; 2]> = of_body.filter(is_above).collect();
+        let of_body: Vec<[f64; 2]> = of_body.filter(is_above).filter(is_damped).collect();
         let body = &lines.parts.body;
         let entry = |row: usize, load: usize| loads[load].get(row).copied().unwrap_or(0.0);
         let measured = FrequencyResponse::new(&TransferMatrices {
@@ -86,7 +92,7 @@ impl<'a> LoopTransfer<'a> {
             measured,
             of_body: of_body.len(),
             resonances: of_body.into_iter().chain(of_loop.filter(is_above)).collect(),
-            turn: TAU / opened.period,
+            turn,
         })
     }
 

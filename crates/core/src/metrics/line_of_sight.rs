@@ -25,7 +25,7 @@ struct LineStatistics {
     jitter: Option<JitterWindow>,
     /// Largest angle of the mirror (rad), and the time for which its command was limited (s).
     mirror: [f64; 2],
-    /// Periods of the mirror before the first sample in which its command was limited.
+    /// Periods of the mirror to the first sample in which its command was limited.
     limited_before: u64,
 }
 
@@ -102,11 +102,12 @@ impl LineOfSightMetrics {
         let Some(of) = self.0.get_mut(sample.line as usize) else { return };
         let period = of.line.mirror.map_or(0.0, |mirror| mirror.period.seconds());
         if of.line.is_assessed(now.seconds()) {
+            if of.mirror[0].is_nan() {
+                of.limited_before = sample.limited;
+            }
             of.mirror[1] = (sample.limited - of.limited_before) as f64 * period;
             let angle = Vector::from_iterator(sample.axes.iter().map(|axis| axis.angle_rad)).norm();
             of.mirror[0] = of.mirror[0].max(angle);
-        } else if of.mirror[0].is_nan() {
-            of.limited_before = sample.limited;
         }
     }
 
