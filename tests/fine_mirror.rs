@@ -15,7 +15,7 @@ use crate::traces::flown;
 use crate::util::Dir;
 
 /// Mirror of 300 Hz with a loop of 1 kHz.
-const MIRROR: &str = "
+pub const MIRROR: &str = "
 [line_of_sight.mirror]
 frequency = \"300 Hz\"
 damping = 0.6
@@ -157,6 +157,11 @@ fn stroke_and_rate_limit_commands() {
     assert!((found / peak - 0.5).abs() < 1e-12, "{found} {peak}");
     let limited = numbers(&metrics, "fine_mirror_limited_s")[0];
     assert!(limited > 0.1 && limited < 2.0, "{limited}");
+    // In a window of a quarter of the run.
+    let windowed = free(5.0, 1e-2, &format!("stroke = {}\n", 0.5 * peak))
+        .replace("period = 0.0005\n", "period = 0.0005\nwindow = [1.5, 2.0]\n");
+    let own = numbers(&flown(&parsed(&windowed), 0, Detail::Full).0, "fine_mirror_limited_s")[0];
+    assert!(own > 0.1 && own <= 0.5 && limited > 0.6, "{own} {limited}");
     let rate = 0.2 * peak;
     let (metrics, trace) = run(&format!("rate = {rate}\n"));
     // Two samples of the line in a period of the mirror.

@@ -2,6 +2,8 @@
 
 use serde_json::Value;
 
+use crate::fine_mirror::MIRROR;
+use crate::mounts::{MOUNT, WHEELS};
 use crate::optics::BENCH;
 use crate::util::Dir;
 
@@ -65,6 +67,32 @@ fn broadband_forces_move_the_line_of_sight_as_covariances_say() {
     }
 }
 
+/// The wheel on its mount at 50 Hz, whose rotor whirls, and a mirror behind the line of sight. Source: `tests/golden/broadband.py`, which
+/// has the published numbers of a bench with a continuous law. The mount makes broadband forces worse, and the mirror slow ones better.
+#[test]
+fn broadband_forces_pass_a_mount_and_a_mirror() {
+    let dir = Dir::new();
+    let imbalance = WHEELS.find("imbalance").expect("an imbalance");
+    let text = bench(0.01, DENSITY)
+        .replace("arrangement = \"orthogonal\"\ninertia = 1e-7", &WHEELS[..imbalance])
+        .replace("name = \"wheel unit\"\n", &format!("name = \"wheel unit\"\n{MOUNT}"))
+        .replacen(
+            "[[4.2, 0, 0], [0, 3.9, 0], [0, 0, 4.8]]",
+            "[[4.2016, 0, 0], [0, 3.9016, 0], [0, 0, 4.8016]]",
+            1,
+        )
+        .replace("[law.attitude]", &format!("{MIRROR}[law.attitude]"));
+    dir.write("bench.toml", text);
+    let names = ["line_of_sight0_x", "line_of_sight0_y"];
+    let before = names.map(|name| format!("{name}_before_mirror"));
+    let all = format!("{},{},{},{}", before[0], before[1], names[0], names[1]);
+    let report = dir.run(&format!("spectrum bench.toml --signal {all} --json")).exits(0).json();
+    let golden = [6.342_049_016e-8, 6.768_652_689e-8, 1.629_444_535e-8, 1.674_251_471e-8];
+    for (place, expected) in golden.into_iter().enumerate() {
+        agree(&all, number(&report["outputs"][place]["rms"]), expected, 1e-5);
+    }
+}
+
 /// Cooler whose strokes are known to a tenth.
 const COOLER: &str = r#"
 [[disturbance]]
@@ -88,6 +116,10 @@ fn lines_of_a_machine_are_at_their_worst_frequency() {
         let report = dir.run(command).exits(0).json();
         let own = &report["outputs"][about]["machines"][0];
         assert_eq!(own["source"], "disturbance[0].lines");
+        // The cumulative rms has all lines, also those above the Nyquist frequency of the law.
+        let output = &report["outputs"][about];
+        let last = output["cumulative_rms"].as_array().and_then(|all| all.last()).expect("numbers");
+        agree("cumulative", number(last), number(&output["rms"]), 1e-3);
         ["frequency_rad_s", "rms", "peak"].map(|key| number(&own[key]))
     };
     let nominal = [(5.618_647_738_181e-10, 9.551_164_11e-10), (3.128_011_993_153e-10, 4.441_789_69e-10)];
@@ -128,6 +160,31 @@ fn runs_have_the_motion_of_linear_loops() {
     }
 }
 
+/// The frequencies of the noise are among those of the densities, and its density is what it is alone.
+#[test]
+fn densities_keep_the_frequencies_of_the_noise() {
+    let dir = Dir::new();
+    let densities = |text: String| -> Vec<(f64, f64)> {
+        dir.write("bench.toml", text);
+        let report = dir.run("spectrum bench.toml --signal roll --json").exits(0).json();
+        let own = &report["outputs"][0]["density_by_source"][0];
+        let numbers = |list: &Value| list.as_array().expect("a list").iter().map(number).collect::<Vec<_>>();
+        numbers(&report["frequency_hz"]).into_iter().zip(numbers(own)).collect()
+    };
+    let alone = densities(BENCH.to_owned());
+    let table = DENSITY.replace(
+        &DENSITY[DENSITY.find("density").expect("a key")..],
+        "density = { table = [[20, 1e-7], [40, 1e-7]] }\n",
+    );
+    let both = densities(format!("{BENCH}{table}"));
+    assert!(both.len() > alone.len() && both.is_sorted_by(|a, b| a.0 < b.0));
+    for (frequency, density) in alone {
+        let place = both.partition_point(|own| own.0 < frequency * (1.0 - 1e-12));
+        agree("frequency", both[place].0, frequency, 1e-12);
+        agree("density", both[place].1, density, 1e-9);
+    }
+}
+
 /// Requirement on the line of sight, sampled like it.
 const REQUIREMENT: &str = r#"
 [[requirement]]
@@ -164,6 +221,7 @@ fn machines_that_do_not_hold_are_refused() {
             "upper = \"2 Hz\"",
             "`disturbance[0].density.upper` must be above `lower`",
         ),
+        (DENSITY, "lower = \"5 Hz\"", "lower = 1e-7", "`disturbance[0].density.lower` must be at least"),
         (DENSITY, ", upper = \"120 Hz\"", "", "`disturbance[0].density.upper` must be given"),
         (
             DENSITY,

@@ -18,9 +18,9 @@ use crate::util::Dir;
 /// Speed of the wheel (rad/s).
 const SPEED: f64 = 50.0 * TAU;
 /// Mount of the wheel, and the wheels: the first turns on it about y, the others on the hub, whose inertia has theirs.
-const MOUNT: &str =
+pub const MOUNT: &str =
     "mount = { translation = \"22 Hz\", rocking = \"30 Hz\", damping = 0.06, axis = [0, 1, 0] }\n";
-const WHEELS: &str = "axes = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]\ninertia = 1.6e-3\npoints = [\"rotor\", \"hub\", \"hub\"]\n\
+pub const WHEELS: &str = "axes = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]\ninertia = 1.6e-3\npoints = [\"rotor\", \"hub\", \"hub\"]\n\
                       speeds = [\"3000 rpm\", 0, 0]\nspeed_limit = \"6000 rpm\"\n\
                       imbalance = { static = [3.6e-6, 0, 0], dynamic = [1.2e-7, 0, 0], phase = \"-90 deg\" }";
 
@@ -203,6 +203,29 @@ fn whirl_on_a_fixed_base() {
     }
 }
 
+/// Harmonics meet the whirl on a base that does not move: forward ones at w0/sqrt(h (h - Is/It)), if h is above Is/It, backward ones at
+/// w0/sqrt(h (h + Is/It)), which have the other sense of the wheel. Both sides of each of two axes are among the speeds.
+#[test]
+fn harmonics_meet_the_whirl() {
+    let scenario = scenario(&[
+        ("mass = 62.0", "mass = 62e9"),
+        ("[[4.2016, 0, 0], [0, 3.9016, 0], [0, 0, 4.8016]]", "[[4.2e9, 0, 0], [0, 3.9e9, 0], [0, 0, 4.8e9]]"),
+        ("damping = 0.06", "damping = 1e-4"),
+        (
+            "phase = \"-90 deg\"",
+            "harmonics = [{ order = 2.0, torque = 1e-8 }, { order = 0.6, torque = 1e-8 }]",
+        ),
+    ]);
+    let imbalance = WheelImbalance::from_scenario(&scenario).expect("wheels").expect("imbalance");
+    let lines = LineLoop::from_scenario(&scenario).expect("a loop");
+    let output = lines.output("line_of_sight0_x").expect("an output");
+    let found = imbalance.largest_spectrum(&lines, &[output]).expect("lines").expect("a largest speed");
+    let is_met = |hertz: f64| found.speed_rad_s.iter().any(|own| (own / TAU / hertz - 1.0).abs() < 1e-7);
+    for hertz in [18.0, 45.0, 10.914_103_126_635, 25.116_550_748_368] {
+        assert!(is_met(hertz), "{hertz} Hz: {:?}", found.speed_rad_s);
+    }
+}
+
 #[test]
 fn responses_to_loads_on_the_wheel() {
     let scenario = scenario(&[]);
@@ -262,7 +285,9 @@ fn wrong_models_give_other_lines() {
     let harmonic = "imbalance = { harmonics = [{ order = 2.0, torque = 1.5e-8 }] }";
     let imbalance = "imbalance = { static = [3.6e-6, 0, 0], dynamic = [1.2e-7, 0, 0], phase = \"-90 deg\" }";
     let at_rotor = "phase = \"-90 deg\", point = \"rotor\" }";
-    let cases: [Case<'_>; 5] = [
+    let harmonic_at_rotor =
+        "imbalance = { harmonics = [{ order = 2.0, torque = 1.5e-8 }], point = \"rotor\" }";
+    let cases: [Case<'_>; 6] = [
         ("whirl", &[], [4.870_208_720_337_7e-10, 1.428_703_788_536_1e-08]),
         (
             "about -y",
@@ -270,7 +295,12 @@ fn wrong_models_give_other_lines() {
             [4.037_777_207_251_1e-10, 1.457_892_278_872_2e-08],
         ),
         ("second harmonic", &[(imbalance, harmonic)], [5.600_521_967_924_0e-09, 1.905_750_781_314_9e-11]),
-        // A mount without whirl: the first harmonic is 8 times too large about x.
+        (
+            "second harmonic, momentum in the hub",
+            &[(points, ""), (imbalance, harmonic_at_rotor)],
+            [2.566_850_769_100_0e-10, 8.732_529_382_489_9e-13],
+        ),
+        // A mount without whirl: the first harmonic is 8 times too large about x, the second 20 times too small.
         (
             "momentum in the hub",
             &[(points, ""), ("phase = \"-90 deg\" }", at_rotor)],
@@ -399,6 +429,11 @@ fn mounts_that_do_not_hold_are_refused() {
     for (from, to, why) in [
         ("rocking = \"30 Hz\", ", "", "`appendage[1].mount.rocking` must be given"),
         ("axis = [0, 1, 0] }", "axis = [0, 0, 0] }", "`appendage[1].mount.axis` must have a length"),
+        (
+            "[[9.0e-4, 0, 0], [0, 1.6e-3, 0], [0, 0, 9.0e-4]]",
+            "[[0, 0, 0], [0, 1.6e-3, 0], [0, 0, 9.0e-4]]",
+            "`appendage[1].inertia` must",
+        ),
         (MOUNT, stiff, "`appendage[1].mount.stiffness` must be symmetric"),
         (MOUNT, flat, "`appendage[1].mount.stiffness` must be positive definite"),
         (MOUNT, no_modes.as_str(), "`appendage[1].modes` must be left out"),

@@ -157,9 +157,9 @@ impl MirrorLoop {
         closed.and_then(|closed| eigenvalues(&closed.a)).unwrap_or_default()
     }
 
-    /// Returns the largest magnitude of a pole of the closed loop.
+    /// Returns the largest magnitude of a pole of the closed loop; infinite if the poles cannot be computed.
     pub fn spectral_radius(&self) -> f64 {
-        self.poles().into_iter().map(modulus).fold(0.0, f64::max)
+        self.poles().into_iter().map(modulus).reduce(f64::max).unwrap_or(f64::INFINITY)
     }
 }
 

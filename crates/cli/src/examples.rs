@@ -75,6 +75,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "shaped-slew",
     "site-pass",
     "slew-wheel-lqg",
+    "solar-telescope",
     "station-keeping",
     "sun-tracking",
     "thruster-phase-plane",

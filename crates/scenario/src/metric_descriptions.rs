@@ -217,7 +217,7 @@ metrics! {
     MIRROR_PEAK = "fine_mirror_peak_rad", "rad",
         "Largest rotation of each line of sight by its fine mirror, over the samples in its window; null without a mirror";
     MIRROR_LIMITED = "fine_mirror_limited_s", "s",
-        "Time for which stroke or rate limit the command of the fine mirror of each line of sight, to its last sample; null without a mirror";
+        "Time for which stroke or rate limit the command of the fine mirror of each line of sight, between the first and the last sample in its window; null without a mirror";
     FREQUENCY_ESTIMATES = "frequency_estimates_hz", "Hz",
         "Estimated natural frequency of each mode, at the last cycle: those tracked by an adaptive observer, ordered by axis, then by frequency, or those that an attitude filter identifies";
     FREQUENCY_ERRORS = "frequency_estimate_errors", "",

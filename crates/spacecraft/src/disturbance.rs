@@ -297,7 +297,7 @@ impl DisturbanceState {
 
     /// Returns true for a broadband load whose density is a table: a run has no filters for it.
     pub fn lacks_run(&self) -> bool {
-        self.disturbance.density.is_some() && self.machine.is_none()
+        self.disturbance.density.as_ref().is_some_and(|density| density.table.is_some())
     }
 
     /// Returns the instant of the next noise draw or pulse edge.

@@ -14,6 +14,9 @@ pub(crate) const TWICE_DAMPING: f64 = 1.4;
 /// Steps of a run in a period of the upper corner: the mean over a step is held for it, which takes 1.6 % of the density at the corner.
 pub(crate) const STEPS: f64 = 20.0;
 
+/// Least ratio of the corners, at which the filters of runs keep half of the digits.
+pub(crate) const LEAST_RATIO: f64 = 1e-8;
+
 /// Reason why a table is refused in runs.
 pub const TABLE_HAS_NO_RUN: &str = "has no run: `spectrum` has it; for runs give `force` or `torque` between the corners `lower` and `upper`";
 
@@ -128,8 +131,11 @@ impl LoadDensity {
             return refused(key, "must be given: the corner of the density, or a `table`".to_owned());
         }
         let [lower, upper] = self.corners()?;
-        let why = format!("must be above `lower`, {lower} rad/s, got {upper}");
-        if lower < upper { None } else { refused("upper", why) }
+        if lower >= upper {
+            return refused("upper", format!("must be above `lower`, {lower} rad/s, got {upper}"));
+        }
+        let why = format!("must be at least {LEAST_RATIO} of `upper`, {upper} rad/s, got {lower}");
+        if lower < LEAST_RATIO * upper { refused("lower", why) } else { None }
     }
 }
 

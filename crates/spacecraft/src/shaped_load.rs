@@ -128,6 +128,12 @@ mod tests {
     use nalgebra::RowVector4;
 
     use super::*;
+    use crate::load_density::LEAST_RATIO;
+
+    #[test]
+    fn the_widest_band_has_filters() {
+        assert!(Filters::new([LEAST_RATIO, 1.0]).is_some());
+    }
 
     /// Variance of a density of 1 N²/Hz between 5 and 120 Hz: an integral over frequency, by tests/golden/broadband.py.
     #[test]

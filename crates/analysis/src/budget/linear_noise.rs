@@ -39,7 +39,7 @@ pub(super) fn index_vibration(
     let measure = |_: usize, lines: &[SpectralLine]| {
         line_variances(lines.iter(), error).map_or(0.0, |variances| variances.iter().sum())
     };
-    Vibration::new(lines, outputs, &measure).ok()
+    Vibration::new(lines, outputs, &measure, &[]).ok()
 }
 
 /// Returns the names that the outputs of an error may have: about each axis, and of a body with one angle.

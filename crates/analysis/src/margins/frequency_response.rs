@@ -138,7 +138,7 @@ fn finite(matrix: DMatrix<Complex<f64>>) -> Option<DMatrix<Complex<f64>>> {
 }
 
 /// Returns the product of a real and a complex matrix.
-fn real_product(left: &DMatrix<f64>, right: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
+pub fn real_product(left: &DMatrix<f64>, right: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
     let (re, im) = (left * right.map(|entry| entry.re), left * right.map(|entry| entry.im));
     re.zip_map(&im, Complex::new)
 }

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use flexsc_formats::document::ConfigError;
+use flexsc_formats::reader_units::number;
 use flexsc_numerics::quadrature::kronrod;
 use flexsc_spacecraft::load_density::LoadDensity;
 use nalgebra::DVector;
@@ -16,11 +17,13 @@ use rayon::prelude::*;
 use super::lines::LineLoop;
 use super::source_motion::SourceMotion;
 use super::spectral_line::SpectralLine;
-use super::transfer::{LoadResponse, LoopTransfer};
+use super::transfer::{LoadResponse, LoopTransfer, Resonance};
 
 /// Lowest frequency, relative to the lowest corner and resonance, and highest, relative to the highest.
 const LOWEST: f64 = 1e-3;
-const HIGHEST: f64 = 30.0;
+const HIGHEST: f64 = 12.0;
+/// Lowest frequency, relative to the lowest corner: below it a free body has no larger part of the motion than this.
+const LOWEST_PART: f64 = 1e-5;
 /// Ratio of the distances of breaks from a resonance, in half widths, and ratio of frequencies of breaks elsewhere.
 const GRADE: f64 = 5.0;
 const APART: f64 = 3.0;
@@ -28,12 +31,20 @@ const APART: f64 = 3.0;
 const NEAR: f64 = 2.0;
 /// Difference of the two rules, relative to the whole, below which an interval counts: the finer one is then far closer.
 const DIFFERENCE: f64 = 1e-6;
+/// Part of what the measurements see by all aliases of resonances, below which one has no breaks of its own.
+const SMALL: f64 = 1e-8;
 /// Largest number of halvings of an interval, and of intervals.
 const HALVINGS: usize = 12;
 const MOST_INTERVALS: usize = 4000;
+/// Largest number of lines over all nodes, outputs and loads.
+const MOST_LINES: usize = 30_000_000;
+/// Sum of the differences of the two rules, relative to the whole, up to which an integral is an answer: the finer one is far closer.
+const TOLERATED: f64 = 0.05;
 
 /// Broadband load at a point of the body.
 pub(super) struct BroadbandSource<'a> {
+    /// Key of the source.
+    pub key: String,
     pub density: &'a LoadDensity,
     /// Components of the load, each with its place in the density and the number of its column.
     pub parts: Vec<(usize, usize)>,
@@ -54,25 +65,36 @@ struct Interval {
     powers: Vec<[f64; 2]>,
 }
 
-/// Returns the frequencies of the loads (Hz), and the motion of each output under each source.
+/// Returns the frequencies of the loads (Hz), and the motion of each output under each source; `others` are further frequencies (Hz) at
+/// which the densities are asked for.
 pub(super) fn broadband(
     lines: &LineLoop<'_>,
     outputs: &[usize],
     loads: &[DVector<f64>],
     sources: Vec<BroadbandSource<'_>>,
+    others: &[f64],
 ) -> Result<(Vec<f64>, Vec<Vec<SourceMotion>>), ConfigError> {
-    if sources.is_empty() {
-        return Ok((Vec::new(), vec![Vec::new(); outputs.len()]));
-    }
     let integral =
         Integral { transfer: LoopTransfer::new(lines, outputs, loads)?, sources, outputs: outputs.len() };
     let mut nodes: Vec<Node> =
         integral.intervals()?.into_iter().flat_map(|interval| interval.nodes).collect();
+    let [least, most] = integral.ends();
+    let beside = |hertz: &f64| {
+        // Beyond the ends of the integral the motion is next to 0.
+        let is_within = (least..=most).contains(&(TAU * hertz));
+        let none = Node { frequency: TAU * hertz, weight: 0.0, responses: Vec::new() };
+        if is_within { integral.node(TAU * hertz, 0.0) } else { Ok(none) }
+    };
+    nodes.extend(others.par_iter().map(beside).collect::<Result<Vec<_>, _>>()?);
     nodes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     let motion = |output: usize, source: &BroadbandSource<'_>| {
         let mut found = SourceMotion::default();
         let mut densities = Vec::with_capacity(nodes.len());
         for node in &nodes {
+            if node.responses.is_empty() {
+                densities.push(0.0);
+                continue;
+            }
             let own = integral.source_power(source, output, node.frequency, &node.responses);
             densities.push(own.density);
             found.sample_variance += node.weight * own.sampled;
@@ -118,9 +140,11 @@ impl Integral<'_> {
     ) -> SourcePower {
         let densities = source.density.at(frequency);
         let mut sum = SourcePower { lines: Vec::new(), density: 0.0, sampled: 0.0 };
-        for (place, column) in &source.parts {
+        let before =
+            source.parts.iter().map(|(_, column)| responses[*column].lines[output].clone()).collect();
+        let behind = self.transfer.behind_mirror(output, before);
+        for ((place, column), lines) in source.parts.iter().zip(behind) {
             let (own, size) = (&responses[*column], densities[*place]);
-            let lines = self.transfer.behind_mirror(output, own.lines[output].clone());
             sum.sampled += size
                 * if self.transfer.has_mirror(output) {
                     lines.iter().map(|(_, amplitude)| amplitude.norm_sqr()).sum()
@@ -142,6 +166,7 @@ impl Integral<'_> {
     /// Returns intervals over which the integral has converged.
     fn intervals(&self) -> Result<Vec<Interval>, ConfigError> {
         let breaks = self.breaks();
+        let most = self.most_intervals(breaks.len())?;
         let mut waiting: Vec<[f64; 2]> = breaks.windows(2).map(|pair| [pair[0], pair[1]]).collect();
         let mut done: Vec<Interval> = Vec::new();
         for halving in 0..=HALVINGS {
@@ -154,7 +179,7 @@ impl Integral<'_> {
                 let mut each = interval.powers.iter().zip(&totals);
                 each.any(|([_, difference], total)| *difference > DIFFERENCE * total)
             };
-            let may_halve = halving < HALVINGS && done.len() + 2 * found.len() < MOST_INTERVALS;
+            let may_halve = halving < HALVINGS && done.len() + 2 * found.len() < most;
             let (coarse, fine): (Vec<_>, Vec<_>) =
                 found.into_iter().partition(|interval| may_halve && is_coarse(interval));
             done.extend(fine);
@@ -163,7 +188,48 @@ impl Integral<'_> {
                 break;
             }
         }
+        self.check(&done)?;
         Ok(done)
+    }
+
+    /// Returns the largest number of intervals whose lines are not too many; `least` are needed.
+    fn most_intervals(&self, least: usize) -> Result<usize, ConfigError> {
+        let columns: usize = self.sources.iter().map(|source| source.parts.len()).sum();
+        let each = kronrod().count() * columns * self.transfer.line_count();
+        let most = (MOST_LINES / each.max(1)).min(MOST_INTERVALS);
+        if least <= most {
+            return Ok(most);
+        }
+        let why = format!(
+            "makes {} lines of outputs with the aliases of law and mirror, at most {MOST_LINES} are possible: ask for fewer outputs, \
+             or give the law and the mirror periods with a shorter common multiple",
+            least * each
+        );
+        Err(ConfigError::new(&self.sources[0].key, why))
+    }
+
+    /// Checks that the integral has converged.
+    fn check(&self, intervals: &[Interval]) -> Result<(), ConfigError> {
+        for index in 0..self.outputs * self.sources.len() {
+            let sum =
+                |part: usize| intervals.iter().map(|interval| interval.powers[index][part]).sum::<f64>();
+            let [power, difference] = [sum(0), sum(1)];
+            if difference > TOLERATED * power {
+                let why = format!(
+                    "the mean square of an output is an integral over frequency that has not converged: two rules differ by {} % \
+                     with {} intervals; has the body a motion that is hardly damped?",
+                    number(100.0 * difference / power),
+                    intervals.len()
+                );
+                return Err(ConfigError::new(&self.sources[index % self.sources.len()].key, why));
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the responses at a frequency (rad/s).
+    fn node(&self, frequency: f64, weight: f64) -> Result<Node, ConfigError> {
+        Ok(Node { frequency, weight, responses: self.transfer.at(frequency)? })
     }
 
     /// Returns an interval with its nodes and powers.
@@ -174,15 +240,15 @@ impl Integral<'_> {
         for [place, fine, coarse] in kronrod() {
             let frequency = ends[0] + half * (1.0 + place);
             let [weight, less] = [fine, coarse].map(|weight| weight * half / TAU);
-            let responses = self.transfer.at(frequency)?;
+            let node = self.node(frequency, weight)?;
             for (index, power) in powers.iter_mut().enumerate() {
                 let (output, source) = (index / self.sources.len(), index % self.sources.len());
-                let own = self.source_power(&self.sources[source], output, frequency, &responses);
+                let own = self.source_power(&self.sources[source], output, frequency, &node.responses);
                 let all: f64 = own.lines.iter().map(|(_, power)| power).sum();
                 power[0] += weight * all;
                 power[1] += (weight - less) * all;
             }
-            nodes.push(Node { frequency, weight, responses });
+            nodes.push(node);
         }
         for power in &mut powers {
             power[1] = power[1].abs();
@@ -190,20 +256,58 @@ impl Integral<'_> {
         Ok(Interval { ends, nodes, powers })
     }
 
-    /// Returns the breaks of the integral (rad/s): knots of the densities, and around each resonance those that its width needs.
-    fn breaks(&self) -> Vec<f64> {
-        let knots: Vec<f64> = self.sources.iter().flat_map(|source| source.density.knots()).collect();
-        let resonances = &self.transfer.resonances;
-        let all = || knots.iter().copied().chain(resonances.iter().map(|[frequency, _]| *frequency));
-        let open = self.sources.iter().any(|source| source.density.corners().is_some());
+    /// Returns those aliases by which the measurements see a part of all that is not small.
+    fn measured(&self, aliases: Vec<(Resonance, f64)>) -> Vec<(Resonance, f64)> {
+        let power = |([frequency, width], _): &(Resonance, f64)| -> Vec<f64> {
+            let Some(squares) = self.transfer.measured_squares(*frequency) else { return Vec::new() };
+            let mut sums = vec![0.0; squares.nrows()];
+            for source in &self.sources {
+                let densities = source.density.at(*frequency);
+                for (place, column) in &source.parts {
+                    let own = squares.column(*column);
+                    sums.iter_mut()
+                        .zip(&own)
+                        .for_each(|(sum, square)| *sum += width * densities[*place] * square);
+                }
+            }
+            sums
+        };
+        let powers: Vec<Vec<f64>> = aliases.iter().map(power).collect();
+        let mut totals: Vec<f64> = Vec::new();
+        for own in &powers {
+            totals.resize(totals.len().max(own.len()), 0.0);
+            totals.iter_mut().zip(own).for_each(|(total, power)| *total += power);
+        }
+        let counts = |own: &Vec<f64>| {
+            own.is_empty() || own.iter().zip(&totals).any(|(power, total)| *power > SMALL * total)
+        };
+        aliases.into_iter().zip(powers).filter(|(_, own)| counts(own)).map(|(alias, _)| alias).collect()
+    }
+
+    /// Returns the knots of the densities (rad/s).
+    fn knots(&self) -> Vec<f64> {
+        self.sources.iter().flat_map(|source| source.density.knots()).collect()
+    }
+
+    /// Returns the ends of the integral (rad/s).
+    fn ends(&self) -> [f64; 2] {
         let ends = |values: &mut dyn Iterator<Item = f64>| {
             values.fold([f64::INFINITY, 0.0], |[least, most], value| [value.min(least), value.max(most)])
         };
-        let [mut least, mut most] = ends(&mut knots.iter().copied());
-        if open {
-            let [lowest, highest] = ends(&mut all());
-            (least, most) = (LOWEST * lowest, HIGHEST * highest);
+        let knots = self.knots();
+        let [least, most] = ends(&mut knots.iter().copied());
+        if self.sources.iter().all(|source| source.density.corners().is_none()) {
+            return [least, most];
         }
+        let resonances = self.transfer.resonances.iter().map(|[frequency, _]| *frequency);
+        let [lowest, highest] = ends(&mut knots.iter().copied().chain(resonances));
+        [(LOWEST * lowest).max(LOWEST_PART * least), HIGHEST * highest]
+    }
+
+    /// Returns the breaks of the integral (rad/s): knots of the densities, and around each resonance those that its width needs.
+    fn breaks(&self) -> Vec<f64> {
+        let knots = self.knots();
+        let [least, most] = self.ends();
         let mut breaks: BTreeMap<u64, f64> = BTreeMap::new();
         let mut add = |frequency: f64| {
             if (least..=most).contains(&frequency) {
@@ -229,7 +333,7 @@ impl Integral<'_> {
         for [frequency, width] in direct {
             around(frequency, width, frequency * (1.0 - 1.0 / NEAR));
         }
-        for ([frequency, width], fold) in aliases {
+        for ([frequency, width], fold) in self.measured(aliases) {
             let own = (frequency - fold).abs();
             around(frequency, width, own);
             around(fold, GRADE * own, self.transfer.turn);

@@ -4,11 +4,8 @@ use flexsc_control::actuator::Wheels;
 use flexsc_dynamics::three_axis::HarmonicLine;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
-use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::inverse::inverse_3x3;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::scalar_search::resonance;
-use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -16,6 +13,7 @@ use super::image_contrast::ImageBlur;
 use super::lines::LineLoop;
 use super::spectral_line::{OutputLines, SineLoad, SpectralLine};
 use super::speed_grid::{ResonantSpeed, resonant_speeds, whirl_speeds};
+use super::vibration::load_column;
 use super::window_rms::WindowRms;
 use super::windows::Window;
 use flexsc_scenario::Scenario;
@@ -360,17 +358,13 @@ fn largest_speed(wheels: &Wheels) -> Option<f64> {
 
 /// Returns a harmonic as a load on the rates of the body and its modes.
 fn load(body: &ThreeAxisModel, line: &HarmonicLine) -> SineLoad {
-    let inverse = inverse_3x3(body.inertia).unwrap_or_else(Matrix3::identity);
     let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
     let column = |part: usize| {
-        let mut column = DVector::zeros(6 + 2 * body.modes.len());
-        column.rows_mut(3, 3).copy_from(&(inverse * line.torque[part]));
-        for mode in 0..body.modes.len() {
-            let turned = hub.get(mode).copied().unwrap_or_else(Vector::zeros);
-            let own = line.forces[part].get(mode).copied().unwrap_or(0.0);
-            column[7 + 2 * mode] = turned.dot(&line.torque[part]) + own;
-        }
-        column
+        let torque = &line.torque[part];
+        load_column(body, torque, |mode| {
+            let turned = hub.get(mode).map_or(0.0, |turned| turned.dot(torque));
+            turned + line.forces[part].get(mode).copied().unwrap_or(0.0)
+        })
     };
     SineLoad { cosine: column(0), sine: column(1) }
 }

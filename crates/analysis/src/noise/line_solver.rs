@@ -5,19 +5,24 @@
 //! the start and F at the end of that period. The torques repeat but for z, so that each of their lines U at w_n moves the body by
 //! (j w_n - A)^-1 B U.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
 
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::reader_units::number;
+use flexsc_numerics::quadrature::nodes;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::mirror_states::MirrorOutput;
 use super::motion::OutputRow;
 use super::period_rows::{ForcedMotion, PeriodRows, Piece, joined};
 use super::spectral_line::{OutputLines, SineLoad, SpectralLine};
-use crate::margins::frequency_response::{FrequencyResponse, modulus, unit_circle};
+use crate::eigenvalues::eigenvalues;
+use crate::margins::frequency_response::{FrequencyResponse, modulus, real_product, unit_circle};
 use crate::open_loop::attitude_rows::seconds;
-use crate::open_loop::{LoopParts, TransferMatrices};
+use crate::open_loop::sampling::{HeldMotion, held};
+use crate::open_loop::{BodyMatrices, LoopParts, TransferMatrices};
 
 /// Turns over a period below which the frequency of a line is next to 0.
 const SLOW: f64 = 3e-6;
@@ -30,6 +35,8 @@ pub struct LineSolver {
     period_rows: PeriodRows,
     body: FrequencyResponse,
     loop_over_period: FrequencyResponse,
+    /// Motion of the body during a piece of each length (fs), at the nodes of its integral: times, weights, and motions.
+    nodes: OnceLock<BTreeMap<i64, Vec<(f64, f64, HeldMotion)>>>,
 }
 
 /// Frequencies (rad/s, with a sign) of the lines over a period (s), the last that of the load.
@@ -57,7 +64,7 @@ impl LineSolver {
         let drivers: Vec<usize> = (0..parts.body.a.nrows()).collect();
         let period_rows = PeriodRows::driven(parts, &[], &drivers)?;
         let (body, whole) = (response(&parts.body.a), response(&period_rows.a));
-        Ok(Self { period_rows, body, loop_over_period: whole })
+        Ok(Self { period_rows, body, loop_over_period: whole, nodes: OnceLock::new() })
     }
 
     /// Returns the frequencies of the lines below the Nyquist frequency of the law, and last that of the load (rad/s).
@@ -143,6 +150,49 @@ impl LineSolver {
             found.push(DMatrix::from_fn(outputs.len(), motion.change.ncols(), amplitude));
         }
         found
+    }
+
+    /// Returns the amplitudes of outputs at a frequency next to 0 that is not that of the loads, as the integral over what the law makes
+    /// of the motion: there the body is rigid, and its response to a torque loses all digits.
+    pub fn slow_amplitudes(
+        &self,
+        parts: &LoopParts<'_>,
+        motion: &LoadedMotion,
+        (rows, outputs): (&[OutputRow], &[usize]),
+        (own, period): (f64, f64),
+    ) -> Amplitudes {
+        let BodyMatrices { a, b, .. } = &parts.body;
+        let all_nodes = self.nodes.get_or_init(|| {
+            let fastest = eigenvalues(a).unwrap_or_default().into_iter().map(modulus).fold(0.0, f64::max);
+            let of = |length: i64| {
+                let each = nodes(seconds(length), fastest).into_iter();
+                (length, each.map(|(time, weight)| (time, weight, held(a, b, time))).collect())
+            };
+            motion
+                .pieces
+                .iter()
+                .map(|piece| piece.length)
+                .collect::<BTreeSet<_>>()
+                .into_iter()
+                .map(of)
+                .collect()
+        });
+        let read = DMatrix::from_fn(outputs.len(), a.nrows(), |place, state| match &rows[outputs[place]] {
+            OutputRow::Body(row) => row[state],
+            OutputRow::Command(_) => 0.0,
+        });
+        let bodies = self.held_values(motion, |piece| &piece.body);
+        let torques = self.held_values(motion, |piece| &piece.torque);
+        let mut sum = Amplitudes::zeros(outputs.len(), motion.change.ncols());
+        for ((piece, body), torque) in motion.pieces.iter().zip(bodies).zip(torques) {
+            let from = seconds(piece.from);
+            let of_law = body - &motion.alone.amplitudes * unit_circle(motion.alone.frequency * from);
+            for (time, weight, (flow, forced)) in &all_nodes[&piece.length] {
+                let value = real_product(&(&read * flow), &of_law) + real_product(&(&read * forced), &torque);
+                sum += value * (unit_circle(-own * (from + time)) * (weight / period));
+            }
+        }
+        sum
     }
 
     /// Returns the mean square modulus of outputs at the samples of the law, under each load alone.

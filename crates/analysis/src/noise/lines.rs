@@ -88,6 +88,12 @@ impl<'a> LineLoop<'a> {
         output_index(&self.signals, name)
     }
 
+    /// Returns the largest number of lines of an output under a load.
+    pub(super) fn line_count(&self, output: usize) -> usize {
+        let before = self.solver.turns(0.0).frequencies.len();
+        before * self.mirror(output).map_or(1, |_| MirrorOutput::LINES)
+    }
+
     /// Returns the load of a torque that turns about one axis of the actuators.
     pub fn torque(&self, axis: usize) -> SineLoad {
         let cosine = self.parts.body.b.column(axis).into_owned();
@@ -142,13 +148,23 @@ impl<'a> LineLoop<'a> {
         let turns = self.solver.turns(frequency);
         let motion = self.solver.solve(&self.parts, loads, &turns)?;
         let mut amplitudes = self.solver.amplitudes(&self.parts, &motion, (&self.rows, outputs), &turns);
+        // Next to the frequency 0, at which the body is rigid, by the motion itself.
+        let last = turns.frequencies.len() - 1;
         for (turn, own) in amplitudes.iter_mut().enumerate() {
-            for (place, output) in outputs.iter().enumerate() {
-                for (load, column) in loads.iter().enumerate() {
-                    // Next to the frequency 0, at which the body is rigid, by the motion itself.
-                    if own[(place, load)].re.is_nan() {
-                        own[(place, load)] = self.slow_line(column, *output, (&turns, turn))?;
+            if turn < last && own.iter().any(|value| value.re.is_nan()) {
+                let at = (turns.frequencies[turn], turns.period);
+                let slow = self.solver.slow_amplitudes(&self.parts, &motion, (&self.rows, outputs), at);
+                own.zip_apply(&slow, |value, slow| {
+                    if value.re.is_nan() {
+                        *value = slow
                     }
+                });
+            }
+        }
+        for (place, output) in outputs.iter().enumerate() {
+            for (load, column) in loads.iter().enumerate() {
+                if amplitudes[last][(place, load)].re.is_nan() {
+                    amplitudes[last][(place, load)] = self.slow_line(column, *output, &turns)?;
                 }
             }
         }
@@ -165,15 +181,15 @@ impl<'a> LineLoop<'a> {
         self.mirrors[output].as_ref()
     }
 
-    /// Returns the amplitude of an output at a frequency, before a mirror, as the integral over the motion.
+    /// Returns the amplitude of an output at the frequency of a load, before a mirror, as the integral over the motion.
     fn slow_line(
         &self,
         load: &SineLoad,
         output: usize,
-        (turns, turn): (&LineFrequencies, usize),
+        turns: &LineFrequencies,
     ) -> Result<Complex<f64>, ConfigError> {
         let motion = motion(&self.parts, &self.rows, (turns.load(), load))?;
-        let (own, mut sum) = (turns.frequencies[turn], Complex::ZERO);
+        let (own, mut sum) = (turns.load(), Complex::ZERO);
         motion.motion.integrate(&[output], [0.0, turns.period], own.abs(), |time, weight, rows| {
             let value: Complex<f64> =
                 rows.row(0).iter().zip(&motion.state).map(|(row, state)| state * *row).sum();

@@ -1,8 +1,9 @@
 //! Fine mirrors of lines of sight among the states of a loop: they follow the body, and do not act back on it.
 
 use flexsc_numerics::attitude::Vector;
-use nalgebra::{Complex, DMatrix, RowDVector};
+use nalgebra::{DMatrix, RowDVector};
 
+use super::transfer::ComplexLine;
 use crate::fine_mirror::{MirrorLoop, mirrors};
 use crate::linear_model::Signal;
 use crate::margins::frequency_response::modulus;
@@ -131,6 +132,9 @@ impl MirrorStates {
 }
 
 impl MirrorOutput {
+    /// Number of lines for each line before the mirror.
+    pub const LINES: usize = 2 * ALIASES as usize + 1;
+
     /// Returns for each output of a loop the mirror behind which it is, if it is behind one.
     pub fn all(scenario: &Scenario, outputs: &[Signal]) -> Vec<Option<Self>> {
         let behind = |output: &Signal| {
@@ -149,31 +153,53 @@ impl MirrorOutput {
 
     /// Returns the lines of the output, with frequencies (rad/s) and complex amplitudes, for those of the line of sight before the
     /// mirror. The last line is that of the last one at its own frequency.
-    pub fn lines(&self, before: &[(f64, Complex<f64>)]) -> Vec<(f64, Complex<f64>)> {
-        let mut all: Vec<(f64, Complex<f64>)> = Vec::new();
-        let largest = before.iter().map(|(_, amplitude)| modulus(*amplitude)).fold(0.0, f64::max);
-        for (place, (frequency, amplitude)) in before.iter().enumerate() {
-            let answer = self.within.answer(*frequency);
-            for k in (-ALIASES..=ALIASES).filter(|k| *k != 0).chain([0]) {
-                let share = match self.tap {
-                    MirrorTap::Error => answer.error(k),
-                    MirrorTap::Angle => answer.mirror(k),
-                };
-                let (at, own) = (answer.alias(k), amplitude * share);
-                let is_direct = k == 0 && place + 1 == before.len();
-                // Lines that an earlier one already has add up with their phases.
-                let same = all.iter().position(|(known, _)| (known - at).abs() < 1e-9 * (1.0 + at.abs()));
-                match same {
-                    Some(known) if is_direct => {
-                        let (_, sum) = all.remove(known);
-                        all.push((at, sum + own));
-                    }
-                    Some(known) => all[known].1 += own,
-                    None if is_direct || modulus(own) > LEAST * largest => all.push((at, own)),
-                    None => {}
-                }
-            }
-        }
-        all
+    pub fn lines(&self, before: &[ComplexLine]) -> Vec<ComplexLine> {
+        behind(&self.shares(before), before)
     }
+
+    /// Returns the lines of the output for those before the mirror under each of some loads of one frequency.
+    pub fn all_lines(&self, before: &[Vec<ComplexLine>]) -> Vec<Vec<ComplexLine>> {
+        let shares = before.first().map_or_else(Vec::new, |first| self.shares(first));
+        before.iter().map(|own| behind(&shares, own)).collect()
+    }
+
+    /// Returns the lines that a unit of each line before the mirror makes.
+    fn shares(&self, before: &[ComplexLine]) -> Vec<Vec<ComplexLine>> {
+        let of_line = |(frequency, _): &ComplexLine| {
+            let answer = self.within.answer(*frequency);
+            let share = |k: i32| match self.tap {
+                MirrorTap::Error => (answer.alias(k), answer.error(k)),
+                MirrorTap::Angle => (answer.alias(k), answer.mirror(k)),
+            };
+            (-ALIASES..=ALIASES).filter(|k| *k != 0).chain([0]).map(share).collect()
+        };
+        before.iter().map(of_line).collect()
+    }
+}
+
+/// Returns lines behind a mirror, for those before it and what a unit of each makes, the last at its own frequency.
+fn behind(shares: &[Vec<ComplexLine>], before: &[ComplexLine]) -> Vec<ComplexLine> {
+    let largest = before.iter().map(|(_, amplitude)| modulus(*amplitude)).fold(0.0, f64::max);
+    let made = |(own, (_, amplitude)): (&Vec<ComplexLine>, &ComplexLine)| {
+        own.iter().map(|(at, share)| (*at, amplitude * share)).collect::<Vec<ComplexLine>>()
+    };
+    let mut all: Vec<ComplexLine> = shares.iter().zip(before).flat_map(made).collect();
+    let Some(direct) = all.pop() else { return all };
+    all.retain(|(_, amplitude)| modulus(*amplitude) > LEAST * largest);
+    all.push(direct);
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Lines of one frequency add up with their phases.
+    let is_same = |one: f64, other: f64| (one - other).abs() < 1e-9 * (1.0 + one.abs());
+    all.dedup_by(|later, kept| {
+        let is_same = is_same(later.0, kept.0);
+        if is_same {
+            kept.1 += later.1;
+        }
+        is_same
+    });
+    if let Some(place) = all.iter().position(|(at, _)| is_same(*at, direct.0)) {
+        let own = all.remove(place);
+        all.push(own);
+    }
+    all
 }

@@ -77,7 +77,7 @@ pub struct NoiseReport {
     pub nyquist_hz: f64,
     /// Sources of noise: keys of the scenario.
     pub sources: Vec<String>,
-    /// Frequencies of the densities (Hz): up to the Nyquist frequency, and with broadband loads as far as these go.
+    /// Frequencies of the densities (Hz): up to the Nyquist frequency, and as far as broadband loads and lines of machines go.
     pub frequency_hz: Vec<f64>,
     /// Noise of each output.
     #[schemars(extend("x-key" = "output"))]
@@ -158,7 +158,8 @@ impl NoiseReport {
         let noisy = NoisyLoop::from_scenario(scenario)?;
         let outputs = chosen(&noisy, &request.signals)?;
         let lines = LineLoop::from_scenario(scenario)?;
-        let vibration = Vibration::new(&lines, &outputs, &|_, lines| Self::measure(lines, request.window))?;
+        let measure = |_: usize, lines: &[SpectralLine]| Self::measure(lines, request.window);
+        let vibration = Vibration::new(&lines, &outputs, &measure, &noisy.frequency_grid())?;
         let wheels = wheel_spectrum(scenario, request.speeds.clone(), &outputs)?;
         let wheels = match request.window {
             Some(window) => wheels.map(|wheels| wheels.over_windows(window)),
@@ -228,11 +229,7 @@ impl NoiseReport {
 
     /// Adds the motion of the outputs under machines.
     fn add_vibration(&mut self, noisy: &NoisyLoop, outputs: &[usize], vibration: &Vibration) {
-        let sampled = self.frequency_hz.clone();
-        if !vibration.frequency_hz.is_empty() {
-            // The nodes of the integral follow the resonances as the grid of the noise does.
-            self.frequency_hz.clone_from(&vibration.frequency_hz);
-        }
+        let sampled = std::mem::replace(&mut self.frequency_hz, vibration.frequency_hz.clone());
         let within = self.frequency_hz.partition_point(|frequency| *frequency <= self.nyquist_hz);
         let densities = noisy.densities(outputs, &self.frequency_hz[..within]);
         self.sources.extend(vibration.sources.iter().cloned());

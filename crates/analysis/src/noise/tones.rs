@@ -26,7 +26,7 @@ const REFINED: usize = 3;
 const EQUAL: f64 = 1e-12;
 /// Instants in a period of the highest harmonic at which the peak is sought.
 const INSTANTS: f64 = 32.0;
-/// Largest whole multiple of the lowest harmonic for which the peak is searched for.
+/// Largest multiple of the frequency common to all harmonics for which the peak is searched for.
 const MOST_WHOLE: f64 = 1000.0;
 
 /// Machine with lines.
@@ -34,12 +34,6 @@ pub(super) struct ToneSource<'a> {
     pub lines: &'a LoadLines,
     /// Load of each harmonic at its amplitude, as a column of the rates of the body's states.
     pub loads: Vec<DVector<f64>>,
-}
-
-/// Lines of each output at one frequency of a machine.
-struct TonesAt {
-    frequency: f64,
-    motions: Vec<SourceMotion>,
 }
 
 /// Machine in a loop.
@@ -59,10 +53,17 @@ pub(super) fn worst_tones(
     let transfer = LoopTransfer::new(lines, outputs, &source.loads)?;
     let tones = ToneLoop { source, transfer, outputs: outputs.len() };
     let frequencies = tones.frequencies();
-    let examined = frequencies.par_iter().map(|at| tones.at(*at)).collect::<Result<Vec<_>, _>>()?;
-    (0..outputs.len())
-        .map(|place| tones.worst(&examined, place, &|own| measure(outputs[place], own)))
-        .collect()
+    // The lines at all frequencies would be many.
+    let values = |at: &f64| -> Result<Vec<f64>, ConfigError> {
+        let motions = tones.at(*at)?;
+        Ok(outputs.iter().zip(motions).map(|(output, own)| measure(*output, &own.lines)).collect())
+    };
+    let values = frequencies.par_iter().map(values).collect::<Result<Vec<_>, _>>()?;
+    let worst = |place: usize| {
+        let own: Vec<f64> = values.iter().map(|values| values[place]).collect();
+        tones.worst((&frequencies, &own), place, &|lines| measure(outputs[place], lines))
+    };
+    (0..outputs.len()).map(worst).collect()
 }
 
 impl ToneLoop<'_> {
@@ -90,34 +91,31 @@ impl ToneLoop<'_> {
     /// Returns the worst of the examined frequencies for an output, refined, and its lines there.
     fn worst(
         &self,
-        examined: &[TonesAt],
+        (frequencies, values): (&[f64], &[f64]),
         output: usize,
         measure: &dyn Fn(&[SpectralLine]) -> f64,
     ) -> Result<SourceMotion, ConfigError> {
-        let values: Vec<f64> = examined.iter().map(|at| measure(&at.motions[output].lines)).collect();
         let mut order: Vec<usize> = (0..values.len()).collect();
         let rises = |place: usize| place == 0 || values[place - 1] <= values[place];
         let falls = |place: usize| values.get(place + 1).is_none_or(|next| *next <= values[place]);
         order.retain(|place| rises(*place) && falls(*place));
         order.sort_by(|a, b| values[*b].total_cmp(&values[*a]));
         let Some(first) = order.first() else { return Ok(SourceMotion::default()) };
-        let mut best = (examined[*first].frequency, values[*first]);
+        let mut best = (frequencies[*first], values[*first]);
         for place in order.into_iter().take(REFINED).filter(|_| values.len() > 1) {
-            let beside = |place: usize| examined[place.min(values.len() - 1)].frequency;
+            let beside = |place: usize| frequencies[place.min(values.len() - 1)];
             // A frequency without an answer is no maximum.
-            let at = |frequency: f64| {
-                self.at(frequency).map_or(0.0, |found| measure(&found.motions[output].lines))
-            };
+            let at = |frequency: f64| self.at(frequency).map_or(0.0, |found| measure(&found[output].lines));
             let found = maximum(at, beside(place.saturating_sub(1)), beside(place + 1));
             if found.1 > best.1 {
                 best = found;
             }
         }
-        Ok(self.at(best.0)?.motions.swap_remove(output))
+        Ok(self.at(best.0)?.swap_remove(output))
     }
 
     /// Returns the lines of each output at a frequency of the machine (rad/s).
-    fn at(&self, frequency: f64) -> Result<TonesAt, ConfigError> {
+    fn at(&self, frequency: f64) -> Result<Vec<SourceMotion>, ConfigError> {
         let lines = self.source.lines;
         let mut motions = vec![SourceMotion::default(); self.outputs];
         // Complex amplitudes of the harmonics of each output, for the peak.
@@ -136,7 +134,7 @@ impl ToneLoop<'_> {
                     });
                     *amplitude = each.sum();
                 }
-                let behind = self.transfer.behind_mirror(output, before);
+                let behind = self.transfer.behind_mirror(output, vec![before]).swap_remove(0);
                 direct[output].extend(behind.last().map(|(_, own)| (multiple(same[0]), *own)));
                 let line = |(at, amplitude): (f64, Complex<f64>)| SpectralLine {
                     frequency_rad_s: at.abs(),
@@ -149,22 +147,24 @@ impl ToneLoop<'_> {
             motion.sample_variance = motion.variance();
             motion.worst = Some(WorstTone { frequency, peak: peak(&harmonics) });
         }
-        Ok(TonesAt { frequency, motions })
+        Ok(motions)
     }
 }
 
-/// Returns the largest magnitude over time of sines, each with its multiple of a frequency and its complex amplitude: of multiples that
-/// are not whole, or up to very high ones, the sum of the amplitudes.
+/// Returns the largest magnitude over time of sines, each with its multiple of a frequency and its complex amplitude: without a common
+/// period, or one that is very long, the sum of the amplitudes.
 fn peak(harmonics: &[(f64, Complex<f64>)]) -> f64 {
-    let least = harmonics.first().map_or(1.0, |harmonic| harmonic.0);
-    let is_whole = |multiple: f64| {
-        let ratio = multiple / least;
-        (ratio - libm::round(ratio)).abs() < 1e-9
+    let lowest = harmonics.first().map_or(1.0, |harmonic| harmonic.0);
+    let highest = harmonics.iter().map(|harmonic| harmonic.0).fold(lowest, f64::max);
+    let is_common = |least: &f64| {
+        let off = |multiple: f64| (multiple / least - libm::round(multiple / least)).abs();
+        harmonics.iter().all(|(multiple, _)| off(*multiple) < 1e-9)
     };
-    let most = harmonics.iter().map(|harmonic| harmonic.0 / least).fold(1.0, f64::max);
-    if most > MOST_WHOLE || !harmonics.iter().all(|(multiple, _)| is_whole(*multiple)) {
+    let parts = (1..).map(|part| lowest / f64::from(part));
+    let Some(least) = parts.take_while(|least| highest <= MOST_WHOLE * least).find(is_common) else {
         return harmonics.iter().map(|(_, amplitude)| modulus(*amplitude)).sum();
-    }
+    };
+    let most = highest / least;
     let count = libm::ceil(INSTANTS * most) as usize;
     let value = |angle: f64| {
         let all = harmonics
@@ -189,6 +189,11 @@ mod tests {
         assert!((peak(&[harmonic(2.0, 0.0), harmonic(6.0, 0.0)]) - 2.0).abs() < 1e-12);
         let found = peak(&[harmonic(2.0, 0.0), harmonic(6.0, std::f64::consts::PI)]);
         assert!((found - 8.0 / f64::sqrt(27.0)).abs() < 1e-9, "{found}");
-        assert!((peak(&[harmonic(1.0, 0.0), harmonic(1.5, 2.0)]) - 2.0).abs() < 1e-12);
+        // sin 2 t + sin 3 t, by mpmath; the same of steps of a motor. Without a common period the amplitudes add up.
+        for scale in [1.0, 200.0] {
+            let sines = [2.0, 3.0].map(|multiple| harmonic(scale * multiple, -0.25 * TAU));
+            assert!((peak(&sines) - 1.905_961_118_715_785_2).abs() < 1e-9, "{}", peak(&sines));
+        }
+        assert!((peak(&[harmonic(1.0, 0.0), harmonic(f64::sqrt(2.0), 2.0)]) - 2.0).abs() < 1e-12);
     }
 }

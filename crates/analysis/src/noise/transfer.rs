@@ -3,21 +3,23 @@
 use std::f64::consts::TAU;
 
 use flexsc_formats::document::ConfigError;
-use nalgebra::{Complex, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::lines::LineLoop;
 use super::spectral_line::SineLoad;
 use crate::eigenvalues::eigenvalues;
-use crate::margins::frequency_response::modulus;
-use crate::open_loop::OpenLoop;
+use crate::margins::frequency_response::{FrequencyResponse, modulus};
+use crate::open_loop::{OpenLoop, TransferMatrices};
 
 /// Frequency and half width of a resonance (rad/s).
-type Resonance = [f64; 2];
+pub type Resonance = [f64; 2];
 
 /// Distance of two resonances, relative to the half width of the narrower one, below which they are one.
 const APART: f64 = 0.5;
 /// Difference from the frequency of a mode as an alias, relative, below which a resonance of the loop is that mode.
 const OF_MODE: f64 = 0.1;
+/// Half width of a pole, relative to its frequency, below which it is not damped.
+const UNDAMPED: f64 = 1e-6;
 /// Largest number of aliases of resonances.
 const MOST_FOLDS: usize = 400;
 
@@ -27,6 +29,8 @@ pub struct LoopTransfer<'a> {
     /// Outputs, as indices.
     outputs: &'a [usize],
     loads: Vec<SineLoad>,
+    /// Response of the measured angles and rates of the body alone to the loads.
+    measured: FrequencyResponse,
     /// Resonances: frequency and half width (rad/s), of the body and then of the loop.
     pub resonances: Vec<[f64; 2]>,
     of_body: usize,
@@ -63,19 +67,32 @@ impl<'a> LoopTransfer<'a> {
             [angle.abs() / opened.period, libm::log(size).abs() / opened.period]
         });
         let is_above = |[frequency, _]: &[f64; 2]| *frequency > 0.0;
+        let turn = TAU / opened.period;
+        // A slow motion that nothing but the law damps, such as a nutation, has no resonance in the loop.
+        let is_damped =
+            |[frequency, width]: &[f64; 2]| *width > UNDAMPED * frequency || *frequency > 0.5 * turn;
         let of_body = eigenvalues(&lines.parts.body.a)
             .unwrap_or_default()
             .into_iter()
             .map(|pole| [pole.im.abs(), pole.re.abs()]);
-        let of_body: Vec<[f64; 2]> = of_body.filter(is_above).collect();
+        let of_body: Vec<[f64; 2]> = of_body.filter(is_above).filter(is_damped).collect();
+        let body = &lines.parts.body;
+        let entry = |row: usize, load: usize| loads[load].get(row).copied().unwrap_or(0.0);
+        let measured = FrequencyResponse::new(&TransferMatrices {
+            a: body.a.clone(),
+            b: DMatrix::from_fn(body.a.nrows(), loads.len(), entry),
+            c: body.c.clone(),
+            d: DMatrix::zeros(body.c.nrows(), loads.len()),
+        });
         let load = |cosine: &DVector<f64>| SineLoad { cosine: cosine.clone(), sine: cosine * 0.0 };
         Ok(Self {
             lines,
             outputs,
             loads: loads.iter().map(load).collect(),
+            measured,
             of_body: of_body.len(),
             resonances: of_body.into_iter().chain(of_loop.filter(is_above)).collect(),
-            turn: TAU / opened.period,
+            turn,
         })
     }
 
@@ -101,6 +118,12 @@ impl<'a> LoopTransfer<'a> {
         (direct, aliases.filter(|([at, _], _)| is_below(*at)).collect())
     }
 
+    /// Returns the squared magnitudes of the measured angles and rates of the body without its law under each load, one in a column, at a
+    /// frequency (rad/s); `None` at a pole.
+    pub fn measured_squares(&self, frequency: f64) -> Option<DMatrix<f64>> {
+        Some(self.measured.scan(Complex::new(0.0, frequency))?.map(|entry| entry.norm_sqr()))
+    }
+
     /// Returns the response to each load at a frequency (rad/s).
     ///
     /// # Errors
@@ -121,12 +144,18 @@ impl<'a> LoopTransfer<'a> {
         Ok((0..self.loads.len()).map(of_load).collect())
     }
 
-    /// Returns the lines of an output behind its mirror, if it is behind one, for those before it; the last is that of the load.
-    pub fn behind_mirror(&self, output: usize, before: Vec<ComplexLine>) -> Vec<ComplexLine> {
+    /// Returns the lines of an output behind its mirror, if it is behind one, for those before it under each of some loads of one
+    /// frequency; the last is that of the load.
+    pub fn behind_mirror(&self, output: usize, before: Vec<Vec<ComplexLine>>) -> Vec<Vec<ComplexLine>> {
         match self.lines.mirror(self.outputs[output]) {
-            Some(mirror) => mirror.lines(&before),
+            Some(mirror) => mirror.all_lines(&before),
             None => before,
         }
+    }
+
+    /// Returns the largest number of lines of all outputs under a load.
+    pub fn line_count(&self) -> usize {
+        self.outputs.iter().map(|output| self.lines.line_count(*output)).sum()
     }
 
     /// Returns true if an output is behind a mirror.

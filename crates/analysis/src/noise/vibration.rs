@@ -1,10 +1,11 @@
 //! Motion of the outputs of a loop under the loads of machines at points of the body: broadband ones, and lines.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
-use flexsc_dynamics::wrench::ForceEffect;
 use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::inverse::inverse_3x3;
 use nalgebra::{DVector, Matrix3};
 
@@ -15,33 +16,51 @@ use super::spectral_line::SpectralLine;
 use super::tones::{ToneSource, worst_tones};
 use flexsc_scenario::Scenario;
 
+/// Part of the variance above which a line is among the frequencies of densities.
+const LARGE: f64 = 1e-5;
+
 /// Motion of outputs of a loop under the machines of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Vibration {
     /// Keys of the sources.
     pub sources: Vec<String>,
-    /// Frequencies of the broadband loads (Hz), in increasing order.
+    /// Frequencies of the densities (Hz), in increasing order: those that are asked for, of lines, and of the integral of broadband loads.
     pub frequency_hz: Vec<f64>,
     /// Motion of each output under each source, by the index of the output.
     pub outputs: BTreeMap<usize, Vec<SourceMotion>>,
 }
 
 impl Vibration {
-    /// Computes the motion of some outputs of a loop; without machines it is empty.
+    /// Computes the motion of some outputs of a loop; without machines it is empty. Broadband loads have their densities at `others` too
+    /// (Hz), if there are any, and at the large lines of machines.
     ///
     /// # Errors
     /// See [`LineLoop::lines`].
-    pub fn new(lines: &LineLoop<'_>, outputs: &[usize], measure: Measure<'_>) -> Result<Self, ConfigError> {
+    pub fn new(
+        lines: &LineLoop<'_>,
+        outputs: &[usize],
+        measure: Measure<'_>,
+        others: &[f64],
+    ) -> Result<Self, ConfigError> {
         let Machines { keys, broadband: bands, tones, loads } = Machines::new(lines.parts.scenario);
         let mut found = Self { sources: keys, ..Self::default() };
         if found.sources.is_empty() || outputs.is_empty() {
             return Ok(found);
         }
-        let (frequency_hz, motions) = broadband(lines, outputs, &loads, bands)?;
-        found.frequency_hz = frequency_hz;
-        found.outputs = outputs.iter().copied().zip(motions).collect();
-        for tone in &tones {
-            let motions = worst_tones(lines, outputs, tone, measure)?;
+        let worst = |tone| worst_tones(lines, outputs, tone, measure);
+        let tones = tones.iter().map(worst).collect::<Result<Vec<Vec<SourceMotion>>, _>>()?;
+        if !others.is_empty() {
+            found.frequency_hz = others.to_vec();
+            found.frequency_hz.extend(tones.iter().flatten().flat_map(large_lines));
+            found.frequency_hz.sort_by(f64::total_cmp);
+            found.frequency_hz.dedup();
+        }
+        if !bands.is_empty() {
+            let (frequency_hz, motions) = broadband(lines, outputs, &loads, bands, &found.frequency_hz)?;
+            found.frequency_hz = frequency_hz;
+            found.outputs = outputs.iter().copied().zip(motions).collect();
+        }
+        for motions in tones {
             for (output, motion) in outputs.iter().zip(motions) {
                 found.outputs.entry(*output).or_default().push(motion);
             }
@@ -56,6 +75,12 @@ impl Vibration {
             .filter(move |source| source.density.is_some() == is_gaussian)
             .flat_map(|source| &source.lines)
     }
+}
+
+/// Returns the frequencies (Hz) of those lines of a motion that carry a part of it.
+fn large_lines(motion: &SourceMotion) -> impl Iterator<Item = f64> {
+    let least = LARGE * motion.variance();
+    motion.lines.iter().filter(move |line| line.mean_square() > least).map(|line| line.frequency_rad_s / TAU)
 }
 
 /// Machines of a scenario.
@@ -75,15 +100,19 @@ impl<'a> Machines<'a> {
         let all = scenario.model.three_axis().map_or(&[][..], |_| &scenario.disturbance[..]);
         for (index, disturbance) in all.iter().enumerate() {
             let Some(body) = scenario.model.three_axis() else { continue };
-            let column = |part| load_column(body, &disturbance.unit_effect(body, part));
+            let column = |part| {
+                let unit = disturbance.unit_effect(body, part);
+                load_column(body, &unit.torque, |mode| unit.forces.get(mode).copied().unwrap_or(0.0))
+            };
             if let Some(density) = &disturbance.density {
                 let given = (0..6).filter(|part| density.has_part(*part));
                 let parts = given.map(|part| {
                     loads.push(column(part));
                     (part, loads.len() - 1)
                 });
-                broadband.push(BroadbandSource { density, parts: parts.collect() });
-                keys.push(format!("disturbance[{index}].density"));
+                let key = format!("disturbance[{index}].density");
+                keys.push(key.clone());
+                broadband.push(BroadbandSource { key, density, parts: parts.collect() });
             }
             if let Some(lines) = &disturbance.lines {
                 let load = |amplitudes: [f64; 6]| {
@@ -100,13 +129,17 @@ impl<'a> Machines<'a> {
     }
 }
 
-/// Returns the rates of the states of the body, and of its modes, under a load.
-fn load_column(body: &ThreeAxisModel, load: &ForceEffect) -> DVector<f64> {
+/// Returns the rates of the states of the body under a load: a torque, and the force on each of its modes.
+pub(super) fn load_column(
+    body: &ThreeAxisModel,
+    torque: &Vector,
+    force: impl Fn(usize) -> f64,
+) -> DVector<f64> {
     let inverse = inverse_3x3(body.inertia).unwrap_or_else(Matrix3::identity);
     let mut column = DVector::zeros(6 + 2 * body.modes.len());
-    column.rows_mut(3, 3).copy_from(&(inverse * load.torque));
+    column.rows_mut(3, 3).copy_from(&(inverse * torque));
     for mode in 0..body.modes.len() {
-        column[7 + 2 * mode] = load.forces.get(mode).copied().unwrap_or(0.0);
+        column[7 + 2 * mode] = force(mode);
     }
     column
 }

@@ -104,7 +104,7 @@ mod tests {
             names.extend(topics.0.iter().map(name));
         }
         let all: BTreeSet<_> = TOPICS.iter().map(|topic| topic.name).collect();
-        // No shipped scenario has a fine mirror; the others are the last of all.
-        assert_eq!(all.difference(&names).collect::<Vec<_>>(), [&"/fine_mirror", &"/metrics", &"/summary"]);
+        // The last of all.
+        assert_eq!(all.difference(&names).collect::<Vec<_>>(), [&"/metrics", &"/summary"]);
     }
 }

@@ -25,6 +25,8 @@ struct LineStatistics {
     jitter: Option<JitterWindow>,
     /// Largest angle of the mirror (rad), and the time for which its command was limited (s).
     mirror: [f64; 2],
+    /// Periods of the mirror to the first sample in which its command was limited.
+    limited_before: u64,
 }
 
 /// Mean and deviations over windows of a fixed number of samples, by Welford's recurrence: small deviations from a large
@@ -73,6 +75,7 @@ impl LineOfSightMetrics {
             square: (0.0, 0),
             peaks: [f64::NAN; 2],
             mirror: [f64::NAN; 2],
+            limited_before: 0,
         };
         Self(scenario.line_of_sight.iter().map(statistics).collect())
     }
@@ -98,8 +101,11 @@ impl LineOfSightMetrics {
     pub fn observe_mirror(&mut self, now: Instant, sample: &FineMirrorSample) {
         let Some(of) = self.0.get_mut(sample.line as usize) else { return };
         let period = of.line.mirror.map_or(0.0, |mirror| mirror.period.seconds());
-        of.mirror[1] = sample.limited as f64 * period;
         if of.line.is_assessed(now.seconds()) {
+            if of.mirror[0].is_nan() {
+                of.limited_before = sample.limited;
+            }
+            of.mirror[1] = (sample.limited - of.limited_before) as f64 * period;
             let angle = Vector::from_iterator(sample.axes.iter().map(|axis| axis.angle_rad)).norm();
             of.mirror[0] = of.mirror[0].max(angle);
         }

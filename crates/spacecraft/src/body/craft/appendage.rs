@@ -179,7 +179,13 @@ impl Appendage {
             let why = "must be left out: an appendage with a `mount` is rigid, and moves on the mount alone";
             return Err(ConfigError::new(key, why));
         }
-        mount.check(&self.rigid_body()).map_err(|fault| fault.within("mount"))
+        let body = self.rigid_body();
+        mount.check_axis().map_err(|fault| fault.within("mount"))?;
+        if !mount.has_inertia(&body) {
+            let why = "must be above 0 about all axes about which the `mount` lets the appendage rotate";
+            return Err(ConfigError::new("inertia", why));
+        }
+        mount.check(&body).map_err(|fault| fault.within("mount"))
     }
 
     /// Checks that no key is given that follows from the size and the frequency of a uniform panel, and that its points

@@ -110,18 +110,29 @@ impl Mount {
         Some(about_centre.mass_matrix() * translation)
     }
 
+    /// Checks the length of the axis.
+    ///
+    /// # Errors
+    /// The key, and the reason.
+    pub(super) fn check_axis(&self) -> Result<(), ConfigError> {
+        let Some(axis) = &self.axis else { return Ok(()) };
+        let length = vector(axis).norm();
+        let why = format!("must have a length of 1e-6 to 1e6, got {length}");
+        if (1e-6..=1e6).contains(&length) { Ok(()) } else { Err(ConfigError::new("axis", why)) }
+    }
+
+    /// Returns true if an appendage has inertia about all axes about which the mount lets it rotate.
+    pub(super) fn has_inertia(&self, body: &RigidBody<'_>) -> bool {
+        let basis = self.basis();
+        Cholesky::new(basis.tr_mul(&(body.mass_matrix() * &basis))).is_some()
+    }
+
     /// Checks the mount for values that are inconsistent with each other or with the appendage.
     ///
     /// # Errors
     /// A key within the mount, and the reason.
     pub(super) fn check(&self, body: &RigidBody<'_>) -> Result<(), ConfigError> {
         let fault = |key: &str, why: &str| Err(ConfigError::new(key, why));
-        if let Some(axis) = &self.axis {
-            let length = vector(axis).norm();
-            if !(1e-6..=1e6).contains(&length) {
-                return fault("axis", &format!("must have a length of 1e-6 to 1e6, got {length}"));
-            }
-        }
         match (&self.stiffness, self.translation, self.rocking) {
             (None, Some(_), Some(_)) => {}
             (None, None, _) => {
@@ -138,13 +149,6 @@ impl Mount {
                     return fault("stiffness", "must be symmetric");
                 }
             }
-        }
-        let basis = self.basis();
-        if Cholesky::new(basis.tr_mul(&(body.mass_matrix() * &basis))).is_none() {
-            return fault(
-                "axis",
-                "must leave rotations about which the appendage has inertia: give it an `inertia`",
-            );
         }
         if self.modes(body).is_none() {
             let why = format!(
