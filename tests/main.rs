@@ -27,6 +27,7 @@ mod forces;
 mod frequency_factor;
 mod gimbals;
 mod hinges;
+mod image_requirements;
 mod imbalance;
 mod import_page;
 mod initial_motion;

@@ -9,6 +9,7 @@ mod authority;
 mod bound;
 mod compatibility;
 mod consistency;
+mod contrast_requirement;
 mod cost;
 mod coupling;
 mod custom_parts;
@@ -65,6 +66,7 @@ use flexsc_spacecraft::body::{Body, BodyModel};
 use flexsc_spacecraft::manoeuvre::Plan;
 
 pub use appendage_drives::AppendageDrives;
+pub use contrast_requirement::ContrastRequirement;
 pub use assessed_requirement::{
     AssessedRequirement, IndexWindow, RequirementFormula, RequirementSource, SampledError, SampledQuantity,
     mode_of,
@@ -200,8 +202,9 @@ impl Scenario {
     fn resolved(written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
         let mut study = ResolvedScenario::resolve(&written, &model)?;
         let mut errors = Vec::new();
-        study.requirements =
+        let checked =
             requirement_checks::assessed(&written, &model, study.assessment_period, &mut errors);
+        (study.requirements, study.contrasts) = (checked.of_runs, checked.of_contrast);
         match errors.into_iter().next() {
             None => {
                 Ok(Self { written, model, plan: None, linear: None, study, units: WrittenUnits::default() })
@@ -281,7 +284,7 @@ impl Scenario {
             RequirementSource::Error(_) | RequirementSource::Formula(_) => false,
         };
         self.reference.band.is_some()
-            || self.requirement.is_empty()
+            || self.requirement.iter().all(Requirement::is_of_contrast)
             || self.study.requirements.iter().any(limits_goal)
     }
 

@@ -49,12 +49,30 @@ impl Vibration {
         Ok(found)
     }
 
-    /// Returns the lines of an output: those of its broadband sources, which are Gaussian, or those of machines with lines.
-    pub fn lines(&self, output: usize, is_gaussian: bool) -> impl Iterator<Item = &SpectralLine> + Clone {
+    /// Computes the motion of some outputs of a loop under its broadband sources alone.
+    ///
+    /// # Errors
+    /// See [`LineLoop::lines`].
+    pub fn gaussian(lines: &LineLoop<'_>, outputs: &[usize]) -> Result<Self, ConfigError> {
+        let Machines { mut keys, broadband: bands, loads, .. } = Machines::new(lines.parts.scenario);
+        keys.truncate(bands.len());
+        let (frequency_hz, motions) = broadband(lines, outputs, &loads, bands)?;
+        Ok(Self { sources: keys, frequency_hz, outputs: outputs.iter().copied().zip(motions).collect() })
+    }
+
+    /// Returns the motion of an output under each of its broadband sources, which are Gaussian, or under each machine with lines.
+    pub fn sources_of(
+        &self,
+        output: usize,
+        is_gaussian: bool,
+    ) -> impl Iterator<Item = &SourceMotion> + Clone {
         let own = self.outputs.get(&output).map_or(&[][..], |sources| sources);
-        own.iter()
-            .filter(move |source| source.density.is_some() == is_gaussian)
-            .flat_map(|source| &source.lines)
+        own.iter().filter(move |source| source.density.is_some() == is_gaussian)
+    }
+
+    /// Returns the lines of an output: those of its broadband sources, or those of machines with lines.
+    pub fn lines(&self, output: usize, is_gaussian: bool) -> impl Iterator<Item = &SpectralLine> + Clone {
+        self.sources_of(output, is_gaussian).flat_map(|source| &source.lines)
     }
 }
 
