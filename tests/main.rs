@@ -79,6 +79,7 @@ mod machines;
 mod magnetic;
 mod manoeuvres;
 mod margins;
+mod measured_paths;
 mod mode_conditions;
 mod mode_laws;
 mod objectives;

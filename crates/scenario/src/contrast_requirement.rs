@@ -103,6 +103,6 @@ impl ContrastRequirement {
     pub fn outputs(&self) -> Vec<String> {
         let axes = [ErrorAxis::X, ErrorAxis::Y, ErrorAxis::Z];
         let counts = axes.into_iter().filter(|axis| self.axis.is_none_or(|own| own == *axis));
-        counts.map(|axis| format!("line_of_sight{}_{}", self.line.0, axis.name())).collect()
+        counts.map(|axis| format!("line_of_sight{}_{}", self.line.0, axis.letter())).collect()
     }
 }

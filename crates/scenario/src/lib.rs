@@ -28,6 +28,7 @@ mod log;
 mod logged_scenario;
 mod magnitudes;
 mod meant;
+mod measured_path;
 pub mod metric_descriptions;
 mod mode_checks;
 mod motion_estimate;
@@ -66,12 +67,12 @@ use flexsc_spacecraft::body::{Body, BodyModel};
 use flexsc_spacecraft::manoeuvre::Plan;
 
 pub use appendage_drives::AppendageDrives;
-pub use contrast_requirement::ContrastRequirement;
 pub use assessed_requirement::{
     AssessedRequirement, IndexWindow, RequirementFormula, RequirementSource, SampledError, SampledQuantity,
     mode_of,
 };
 pub use bound::BoundSpec;
+pub use contrast_requirement::ContrastRequirement;
 pub use cost::{Cost, MOST_RUNS};
 pub use custom_parts::{CustomLaw, CustomParts};
 pub use epoch::date_from_text;
@@ -80,6 +81,7 @@ pub use fault::{ACTIVE_FAULT, Fault, NO_FAULT, PartFailures};
 pub use fine_mirror::FineMirror;
 pub use line_of_sight::LineOfSight;
 pub use log::{LogSpec, SceneSpec};
+pub use measured_path::{MeasuredPath, PATH_HAS_NO_RUN};
 pub use optics::{LineSensitivity, OpticalElement};
 pub use reference_values::{Pointing, Reference};
 pub use requirement::{ErrorAxis, Interpretation, Limit, PointingIndex, Requirement, WindowConvention};
@@ -164,6 +166,7 @@ impl Scenario {
         let fault =
             epoch::validate(written.epoch.as_ref()).or_else(|| written.read_environment(parent, directory));
         let fault = fault.or_else(|| written.read_disturbances(directory));
+        let fault = fault.or_else(|| written.read_measured_paths(directory));
         if let Some(fault) = fault {
             return Err(document.at_key(&fault));
         }

@@ -61,7 +61,7 @@ impl MeasuredPath {
             return refused("force", "must be given, or `torque`: the axis of one of them".to_owned());
         }
         if let Some(unit) = self.unit.as_ref().filter(|_| self.size().is_none()) {
-            return refused("unit", format!("must be an angle per {}, such as rad/{}, got `{unit}`", self.of(), self.of()));
+            return refused("unit", format!("must be an angle per {}, such as rad/{}, got `{unit}`", self.load_unit(), self.load_unit()));
         }
         let is_polar = self.table.header().map(|header| header == POLAR);
         match (&self.phase, is_polar) {
@@ -82,13 +82,13 @@ impl MeasuredPath {
     }
 
     /// Returns the unit of the load.
-    fn of(&self) -> &'static str {
+    fn load_unit(&self) -> &'static str {
         if self.force.is_some() { "N" } else { "(N m)" }
     }
 
     /// Returns the size of the unit of the response in rad/N or rad/(N m); `None` if it has none.
     fn size(&self) -> Option<f64> {
-        self.unit.as_ref().map_or(Some(1.0), |unit| units_ratio(unit, &format!("rad/{}", self.of())))
+        self.unit.as_ref().map_or(Some(1.0), |unit| units_ratio(unit, &format!("rad/{}", self.load_unit())))
     }
 
     /// Returns the frequencies (rad/s) with the real and imaginary part of the response (rad/N or rad/(N m)).

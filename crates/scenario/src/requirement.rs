@@ -134,6 +134,11 @@ pub enum ErrorAxis {
 }
 
 impl ErrorAxis {
+    /// Returns the letter of the axis.
+    pub fn letter(self) -> &'static str {
+        ["x", "y", "z"][self as usize]
+    }
+
     /// Returns the name of the axis.
     pub fn name(self) -> &'static str {
         AXES[self as usize]

@@ -31,9 +31,9 @@ const SAMPLED: [&str; 3] = ["pointing_error", "rate_error", "line_of_sight"];
 /// Requirements of a scenario.
 #[derive(Default)]
 pub struct CheckedRequirements {
-    /// Those that runs are judged by, that of `reference.pointing.rms` first.
+    /// Requirements that runs are judged by, that of `reference.pointing.rms` first.
     pub of_runs: Vec<AssessedRequirement>,
-    /// Those on the contrast of an image.
+    /// Requirements on the contrast of an image.
     pub of_contrast: Vec<ContrastRequirement>,
 }
 

@@ -10,10 +10,10 @@ use std::f64::consts::TAU;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quadrature::kronrod;
 use flexsc_spacecraft::load_density::LoadDensity;
-use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::lines::LineLoop;
+use super::measured_loads::VibrationLoad;
 use super::source_motion::SourceMotion;
 use super::spectral_line::SpectralLine;
 use super::transfer::{LoadResponse, LoopTransfer};
@@ -58,7 +58,7 @@ struct Interval {
 pub(super) fn broadband(
     lines: &LineLoop<'_>,
     outputs: &[usize],
-    loads: &[DVector<f64>],
+    loads: &[VibrationLoad],
     sources: Vec<BroadbandSource<'_>>,
 ) -> Result<(Vec<f64>, Vec<Vec<SourceMotion>>), ConfigError> {
     if sources.is_empty() {

@@ -32,8 +32,6 @@ const FARTHEST: f64 = 4.0;
 pub struct EnergyCircle {
     /// Number of the line of sight.
     pub line: usize,
-    /// Point of the line of sight.
-    pub point: String,
     /// Rms over the exposure along the longer axis of the blur (rad).
     pub major_rms_rad: f64,
     /// Rms along the shorter axis (rad).
@@ -92,14 +90,13 @@ impl EnergyCircle {
                 .into_iter()
                 .map(|(time, part)| (part, covariance(time)))
                 .collect();
-            let point = sights[line].point.clone();
-            Ok(Self::new((line, point), &each))
+            Ok(Self::new(line, &each))
         };
         (0..sights.len()).map(of_line).collect::<Result<_, _>>().map_err(NoiseError::Request)
     }
 
     /// Returns the circles of covariances (rad²), each with its part of the exposure.
-    fn new((line, point): (usize, String), covariances: &[(f64, Matrix3<f64>)]) -> Self {
+    fn new(line: usize, covariances: &[(f64, Matrix3<f64>)]) -> Self {
         let whole: Matrix3<f64> = covariances.iter().map(|(part, covariance)| covariance * *part).sum();
         let [major, minor] = largest_eigenvalues(&whole).map(f64::sqrt);
         let axes: Vec<(f64, [f64; 2])> =
@@ -107,7 +104,6 @@ impl EnergyCircle {
         let [half, four_fifths, most] = PARTS.map(|part| radius(&axes, part));
         Self {
             line,
-            point,
             major_rms_rad: major,
             minor_rms_rad: minor,
             radius_50_rad: half,

@@ -27,6 +27,7 @@ mod image_contrast;
 mod imbalance;
 mod line_solver;
 mod lines;
+mod measured_loads;
 pub(crate) mod mirror_states;
 mod motion;
 mod noisy_loop;

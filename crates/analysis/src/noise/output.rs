@@ -104,7 +104,7 @@ fn line_of_line_rows(parts: &LoopParts<'_>, order: usize) -> Vec<(Signal, Output
 }
 
 /// Returns the axis between two axes of the body, by its name.
-fn diagonal(name: &str) -> Vector {
+pub fn diagonal(name: &str) -> Vector {
     let part = |axis: &str| if name.contains(axis) { std::f64::consts::FRAC_1_SQRT_2 } else { 0.0 };
     Vector::new(part("x"), part("y"), part("z"))
 }

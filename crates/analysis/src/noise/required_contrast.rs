@@ -55,7 +55,7 @@ pub struct ContrastPoint {
     pub mtf: f64,
 }
 
-/// What a source takes of the contrast of an image.
+/// Contrast of an image with and without a source.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[schemars(extend("x-dict" = true))]
 pub struct ContrastCost {

@@ -10,6 +10,7 @@ use nalgebra::{DVector, Matrix3};
 
 use super::broadband::{BroadbandSource, broadband};
 use super::lines::LineLoop;
+use super::measured_loads::VibrationLoad;
 use super::source_motion::{Measure, SourceMotion};
 use super::spectral_line::SpectralLine;
 use super::tones::{ToneSource, worst_tones};
@@ -82,8 +83,8 @@ struct Machines<'a> {
     keys: Vec<String>,
     broadband: Vec<BroadbandSource<'a>>,
     tones: Vec<ToneSource<'a>>,
-    /// Broadband loads, as columns of the rates of the body's states.
-    loads: Vec<DVector<f64>>,
+    /// Broadband loads, each a unit of one component.
+    loads: Vec<VibrationLoad>,
 }
 
 impl<'a> Machines<'a> {
@@ -93,21 +94,20 @@ impl<'a> Machines<'a> {
         let all = scenario.model.three_axis().map_or(&[][..], |_| &scenario.disturbance[..]);
         for (index, disturbance) in all.iter().enumerate() {
             let Some(body) = scenario.model.three_axis() else { continue };
-            let column = |part| load_column(body, &disturbance.unit_effect(body, part));
+            let load = |amplitudes: [f64; 6]| {
+                let column = |part| load_column(body, &disturbance.unit_effect(body, part));
+                VibrationLoad::new(disturbance.place(body), amplitudes, column)
+            };
             if let Some(density) = &disturbance.density {
                 let given = (0..6).filter(|part| density.has_part(*part));
                 let parts = given.map(|part| {
-                    loads.push(column(part));
+                    loads.push(load(std::array::from_fn(|own| if own == part { 1.0 } else { 0.0 })));
                     (part, loads.len() - 1)
                 });
                 broadband.push(BroadbandSource { density, parts: parts.collect() });
                 keys.push(format!("disturbance[{index}].density"));
             }
             if let Some(lines) = &disturbance.lines {
-                let load = |amplitudes: [f64; 6]| {
-                    let each = amplitudes.into_iter().enumerate().filter(|(_, amplitude)| *amplitude != 0.0);
-                    each.map(|(part, amplitude)| column(part) * amplitude).sum()
-                };
                 let loads = lines.harmonics.iter().map(|harmonic| load(harmonic.amplitudes())).collect();
                 tones.push(ToneSource { lines, loads });
                 tone_keys.push(format!("disturbance[{index}].lines"));

@@ -35,13 +35,13 @@ impl SpatialUnits {
     }
 
     /// Returns the unit of a requirement by its number.
-    fn of(&self, place: usize) -> (&str, f64) {
+    fn unit(&self, place: usize) -> (&str, f64) {
         self.0.get(place).map_or((PLAIN, 1.0), |(name, size)| (name.as_str(), *size))
     }
 
     /// Returns the spatial frequency and the exposure of a requirement by its number, in words.
     fn place(&self, place: usize, own: &RequiredContrast) -> String {
-        let (unit, size) = self.of(place);
+        let (unit, size) = self.unit(place);
         let exposure = own.exposure_s.map_or_else(|| "long exposure".to_owned(), time_span);
         format!("{} {unit}, {exposure}", four_digits(own.spatial_frequency / size))
     }
@@ -125,7 +125,7 @@ pub fn require_met(name: &str, contrasts: &[RequiredContrast]) -> Result<(), Cli
 pub fn figures(name: &str, contrasts: &[RequiredContrast], spatial: &SpatialUnits) -> Vec<Named> {
     let figure = |(place, own): (usize, &RequiredContrast)| {
         let number = if place == 0 { String::new() } else { format!("-{}", place + 1) };
-        (format!("{name}-mtf{number}"), figure(name, own, spatial.of(place)))
+        (format!("{name}-mtf{number}"), figure(name, own, spatial.unit(place)))
     };
     contrasts.iter().enumerate().map(figure).collect()
 }

@@ -14,7 +14,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use flexsc_core::analysis::noise::{
-    MachineLines, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window, WindowRms,
+    EnergyCircle, MachineLines, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window, WindowRms,
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::time_span;
@@ -233,7 +233,7 @@ const MACHINES: [Column<'_>; 5] = [
 
 /// Columns of the circles of the energy of an image.
 const CIRCLES: [Column<'_>; 6] = [
-    column("point", "line of sight"),
+    column("output", "output"),
     column("radius_50_rad", "radius\nof 50 %"),
     column("radius_80_rad", "80 %"),
     column("radius_95_rad", "95 %"),
@@ -284,7 +284,12 @@ impl SpectrumResults {
         let columns =
             if rows.iter().any(|row| row["least"].is_number()) { &CONTRAST[..] } else { &CONTRAST[..2] };
         print_rows(&rows, columns, self.units);
-        let circles: Vec<Json> = self.report.circles.iter().map(|own| json!(own)).collect();
+        let circle = |own: &EnergyCircle| {
+            let mut row = json!(own);
+            row["output"] = json!(format!("line_of_sight{}", own.line));
+            row
+        };
+        let circles: Vec<Json> = self.report.circles.iter().map(circle).collect();
         if !circles.is_empty() {
             say!("  energy of the image within circles, by noise and broadband loads; lines are not in it");
             print_rows(&circles, &CIRCLES, self.units);
