@@ -174,6 +174,7 @@ mod campaigns;
 mod check;
 mod cli;
 #[cfg(target_os = "linux")]
+mod correlated_loads;
 mod costs;
 mod cubesat;
 mod extremes;
@@ -229,6 +230,7 @@ mod wheel_figures;
 mod export_fmu;
 mod extending;
 mod extending_verbs;
+mod frames;
 mod frozen;
 mod habits;
 #[cfg(feature = "handover")]

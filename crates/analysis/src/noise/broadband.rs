@@ -35,8 +35,8 @@ const MOST_INTERVALS: usize = 4000;
 /// Broadband load at a point of the body.
 pub(super) struct BroadbandSource<'a> {
     pub density: &'a LoadDensity,
-    /// Components of the load, each with its place in the density and the number of its column.
-    pub parts: Vec<(usize, usize)>,
+    /// Numbers of its loads.
+    pub loads: Vec<usize>,
 }
 
 /// Response at one node of the integral over frequency.
@@ -116,10 +116,10 @@ impl Integral<'_> {
         frequency: f64,
         responses: &[LoadResponse],
     ) -> SourcePower {
-        let densities = source.density.at(frequency);
+        let densities = source.density.load_densities(frequency);
         let mut sum = SourcePower { lines: Vec::new(), density: 0.0, sampled: 0.0 };
-        for (place, column) in &source.parts {
-            let (own, size) = (&responses[*column], densities[*place]);
+        for (load, size) in source.loads.iter().zip(densities) {
+            let own = &responses[*load];
             let lines = self.transfer.behind_mirror(output, own.lines[output].clone());
             sum.sampled += size
                 * if self.transfer.has_mirror(output) {

@@ -81,6 +81,13 @@ impl fmt::Display for NoiseError {
 
 impl std::error::Error for NoiseError {}
 
+impl NoiseError {
+    /// Returns the fault of wheels without a largest speed.
+    pub(super) fn without_speed() -> Self {
+        Self::Request("speeds must be given: the scenario gives no largest speed of its wheels".to_owned())
+    }
+}
+
 impl From<ConfigError> for NoiseError {
     fn from(fault: ConfigError) -> Self {
         Self::Key(fault)

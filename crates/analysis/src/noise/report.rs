@@ -373,11 +373,5 @@ fn wheel_spectrum(
         Some(speeds) => Some(imbalance.spectrum(&lines, &speeds, outputs)?),
         None => imbalance.refined_spectrum(&lines, outputs)?,
     };
-    found.map(Some).ok_or_else(without_speed)
-}
-
-/// Returns the fault of wheels without a largest speed.
-pub(super) fn without_speed() -> NoiseError {
-    let why = "speeds must be given: the scenario gives no largest speed of its wheels";
-    NoiseError::Request(why.to_owned())
+    found.map(Some).ok_or_else(NoiseError::without_speed)
 }

@@ -9,7 +9,6 @@ use super::image_contrast::ImageBlur;
 use super::imbalance::{WheelImbalance, WheelSpectrum};
 use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, NoisyLoop};
-use super::report::without_speed;
 use super::spectral_line::{OutputLines, SpectralLine};
 use super::vibration::Vibration;
 use crate::open_loop::{LoopBreak, LoopParts};
@@ -115,7 +114,7 @@ impl RequiredContrast {
         let vibration = Vibration::new(&lines, &outputs, &loss)?;
         let wheels = match WheelImbalance::from_scenario(parts.scenario)? {
             Some(imbalance) => {
-                Some(imbalance.refined_spectrum(&lines, &outputs)?.ok_or_else(without_speed)?)
+                Some(imbalance.refined_spectrum(&lines, &outputs)?.ok_or_else(NoiseError::without_speed)?)
             }
             None => None,
         };
@@ -129,7 +128,7 @@ impl RequiredContrast {
                 worst = Some(own);
             }
         }
-        let worst = worst.ok_or_else(without_speed)?;
+        let worst = worst.ok_or_else(NoiseError::without_speed)?;
         let mut sources = [&noisy.sources[..], &vibration.sources].concat();
         sources.extend(wheels.map(|_| WHEELS.to_owned()));
         Ok(worst.judged(required, noisy.outputs[worst.output].name.clone(), sources))

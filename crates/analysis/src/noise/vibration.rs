@@ -99,12 +99,11 @@ impl<'a> Machines<'a> {
                 VibrationLoad::new(disturbance.place(body), amplitudes, column)
             };
             if let Some(density) = &disturbance.density {
-                let given = (0..6).filter(|part| density.has_part(*part));
-                let parts = given.map(|part| {
-                    loads.push(load(std::array::from_fn(|own| if own == part { 1.0 } else { 0.0 })));
-                    (part, loads.len() - 1)
+                let sums = density.loads().into_iter().map(|parts| {
+                    loads.push(load(std::array::from_fn(|own| if parts.contains(&own) { 1.0 } else { 0.0 })));
+                    loads.len() - 1
                 });
-                broadband.push(BroadbandSource { density, parts: parts.collect() });
+                broadband.push(BroadbandSource { density, loads: sums.collect() });
                 keys.push(format!("disturbance[{index}].density"));
             }
             if let Some(lines) = &disturbance.lines {
