@@ -8,14 +8,14 @@ use crate::optics::BENCH;
 use crate::util::Dir;
 
 /// Density of the forces on the wheel unit.
-const DENSITY: &str = r#"
+pub const DENSITY: &str = r#"
 [[disturbance]]
 point = "rotor"
 density = { force = [1e-6, 1e-6, 1e-6], lower = "5 Hz", upper = "120 Hz" }
 "#;
 
 /// Returns the bench under a law on the hub's rotation, of 0.05 Hz and with samples of a period (s), and what else acts.
-fn bench(period: f64, loads: &str) -> String {
+pub fn bench(period: f64, loads: &str) -> String {
     let start = BENCH.find("[[sensor]]").expect("sensors");
     let end = BENCH.find("[actuator").expect("actuators");
     let law = format!(
@@ -26,12 +26,12 @@ fn bench(period: f64, loads: &str) -> String {
     text.replace("seed = 1\n", "seed = 1\nsensor = \"continuous\"\n")
 }
 
-fn number(value: &Value) -> f64 {
+pub fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
 /// Asserts that two numbers agree to a fraction of the second.
-fn agree(what: &str, found: f64, expected: f64, part: f64) {
+pub fn agree(what: &str, found: f64, expected: f64, part: f64) {
     assert!((found / expected - 1.0).abs() < part, "{what}: {found:.12e}, expected {expected:.12e}");
 }
 

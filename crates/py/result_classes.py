@@ -93,6 +93,13 @@ EXAMPLES = {
     >>> budget.runs, len(budget.indices) <= len(budget.requirements)
     (2, True)
     """,
+    "RequiredContrast": """
+    >>> sharp = {"name": "sharp", "quantity": "mtf", "point": "bench", "spatial_frequency": 1e5, "least": 0.9}
+    >>> spectrum = flexsc.Scenario.example("wheel-run-up").with_("requirement", [sharp]).spectrum()
+    >>> contrast = spectrum.contrasts["sharp"]
+    >>> contrast.met == (contrast.mtf >= 0.9), list(contrast.costs)[0]
+    (True, 'actuator.wheels.imbalance')
+    """,
     "SettlingTime": """
     >>> times = flexsc.Scenario.example("attitude-hold").margins().settling_times
     >>> times[0].step, times[0].angle, times[0].time < 100.0

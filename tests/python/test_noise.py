@@ -47,3 +47,37 @@ def test_what_has_no_spectrum_is_refused() -> None:
         flexsc.Scenario.example("attitude-hold").spectrum(["angle"])
     with pytest.raises(ValueError, match="separation needs a window"):
         flexsc.Scenario.example("attitude-hold").spectrum(separation=3.0)
+
+
+SHARP = {
+    "name": "sharp",
+    "quantity": "mtf",
+    "point": "bench",
+    "spatial_frequency": 2e5,
+    "exposure": 0.02,
+    "least": 0.99,
+}
+
+
+def test_required_contrasts_are_those_of_the_worst_speed_and_axis() -> None:
+    craft = flexsc.Scenario.example("wheel-run-up")
+    pixel = craft.spectrum(window=0.02, pixel=0.5 / SHARP["spatial_frequency"])
+    assert pixel.wheels is not None and pixel.wheels.mtf is not None
+    least = min(values.min() for name, values in pixel.wheels.mtf.items() if name.startswith("line_of_sight"))
+    found = craft.with_("requirement", [SHARP]).spectrum().contrasts["sharp"]
+    assert found.mtf == pytest.approx(least, rel=1e-6)
+    assert found.met == (found.mtf >= 0.99)
+    assert found.curve["mtf"][0] == 1.0
+    assert found.curve["spatial_frequency"][-1] == pytest.approx(4e5)
+    wheels = found.costs["actuator.wheels.imbalance"]
+    assert wheels["alone"] == pytest.approx(found.mtf, rel=1e-3)
+    circle = pixel.circles[0]
+    assert 0.0 < circle["radius_50"] < circle["radius_80"] < circle["radius_95"]
+
+
+def test_the_worst_contrast_is_searched_for_by_linear_loops() -> None:
+    ranges = {"actuator.wheels.imbalance.static[0]": {"uniform": [4e-6, 1e-5]}}
+    craft = flexsc.Scenario.example("wheel-run-up").with_("requirement", [SHARP]).with_("uncertain", ranges)
+    worst = craft.worst(requirement="sharp", points=8)
+    assert worst.least
+    assert worst.worst <= worst.nominal

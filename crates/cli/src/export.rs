@@ -1,5 +1,6 @@
 //! `flexsc export`: a topic of a log as a table, or the whole run in a format of other programs.
 
+mod frames;
 mod handover;
 mod metrics;
 mod table;
@@ -31,6 +32,8 @@ pub struct ExportArgs {
     /// Replace a FILE of other content
     #[arg(long, requires = "out")]
     force: bool,
+    #[command(flatten)]
+    frames: frames::FrameArgs,
     #[command(flatten)]
     handover: handover::HandoverArgs,
 }
@@ -98,9 +101,16 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
             let why = "--topic: this format holds the whole run, and only csv and jsonl hold one topic";
             return Err(CliError::Arguments(why.to_owned()));
         }
+        if args.frames.request().is_some() {
+            let why = "--frames: a table of frames is csv or jsonl";
+            return Err(CliError::Arguments(why.to_owned()));
+        }
         return whole_run::run(args, format);
     }
     args.handover.refuse()?;
+    if let Some(request) = args.frames.request() {
+        return frames::run(args, format == ExportFormat::Jsonl, request);
+    }
     if args.out.is_some() && args.topic.is_none() {
         let why = "-o: a table is of one topic\n\nhint: --topic names it, and `flexsc export LOG` lists them";
         return Err(CliError::Arguments(why.to_owned()));

@@ -35,7 +35,7 @@ use thiserror::Error;
 use toml::{Table, Value};
 
 use crate::metrics::{self, Metrics, MetricsCollector, Selection};
-use flexsc_scenario::{Cost, MOST_RUNS, Scenario};
+use flexsc_scenario::{Cost, MOST_RUNS, PATH_HAS_NO_RUN, Scenario};
 use flexsc_sim::{Simulation, SimulationError};
 
 pub(crate) use campaign_runs::UncertainValues;
@@ -155,6 +155,10 @@ impl Campaign {
         if let Some(index) = scenario.disturbance.iter().position(tabled) {
             let (origin, key) = (origin.to_owned(), format!("disturbance[{index}].density.table"));
             return Err(ScenarioError::Key { origin, key, why: TABLE_HAS_NO_RUN.to_owned() });
+        }
+        if let Some(key) = scenario.measured_path() {
+            let why = PATH_HAS_NO_RUN.to_owned();
+            return Err(ScenarioError::Key { origin: origin.to_owned(), key, why });
         }
         // A key with values is not drawn.
         let varied = design.keys();

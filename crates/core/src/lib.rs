@@ -47,6 +47,7 @@
 pub mod answer;
 pub mod batch;
 pub mod campaign;
+pub mod frames;
 pub mod metrics;
 pub mod prelude;
 pub mod requirement_verdict;

@@ -43,17 +43,23 @@ pub trait TableKind {
 pub struct CsvTable<K> {
     file: Option<String>,
     rows: Arc<Vec<Vec<f64>>>,
+    header: Option<&'static [&'static str]>,
     kind: PhantomData<K>,
 }
 
 impl<K> CsvTable<K> {
     fn new(file: Option<String>, rows: Vec<Vec<f64>>) -> Self {
-        Self { file, rows: Arc::new(rows), kind: PhantomData }
+        Self { file, rows: Arc::new(rows), header: None, kind: PhantomData }
     }
 
     /// Keeps the rows inline, and removes the reference to their file.
     pub fn inline(&mut self) {
         self.file = None;
+    }
+
+    /// Returns the header of the file, if it has one.
+    pub fn header(&self) -> Option<&'static [&'static str]> {
+        self.header
     }
 
     /// Returns the rows.
@@ -70,10 +76,10 @@ impl<K: TableKind> CsvTable<K> {
     pub fn read(&mut self, directory: &Path) -> Result<(), String> {
         let Some(file) = &mut self.file else { return Ok(()) };
         locate(file, directory);
-        let rows = read_file(Path::new(file), &[], &format!("CSV {}", K::ROWS), |path| {
+        let (rows, header) = read_file(Path::new(file), &[], &format!("CSV {}", K::ROWS), |path| {
             read::<K>(open_text_up_to(path, K::LONGEST)?)
         })?;
-        self.rows = Arc::new(rows);
+        (self.rows, self.header) = (Arc::new(rows), header);
         Ok(())
     }
 
@@ -100,10 +106,13 @@ fn check<K: TableKind>(rows: &[Vec<f64>], place: &dyn Fn(usize) -> String) -> Re
     }
 }
 
+/// Rows of a CSV file, and its header if it has one.
+type RowsAndHeader = (Vec<Vec<f64>>, Option<&'static [&'static str]>);
+
 /// Reads the lines of a CSV file: a header if any, then rows.
-fn read<K: TableKind>(file: impl BufRead) -> Result<Vec<Vec<f64>>, String> {
+fn read<K: TableKind>(file: impl BufRead) -> Result<RowsAndHeader, String> {
     let (mut rows, mut places) = (Vec::new(), Vec::new());
-    let mut is_first = true;
+    let (mut is_first, mut header) = (true, None);
     for (index, line) in file.lines().enumerate() {
         let number = index + 1;
         let line = line.map_err(|error| match error.kind() {
@@ -118,8 +127,11 @@ fn read<K: TableKind>(file: impl BufRead) -> Result<Vec<Vec<f64>>, String> {
         let is_header = |header: &&[&str]| {
             fields.iter().map(|field| field.to_ascii_lowercase()).eq(header.iter().copied())
         };
-        if std::mem::take(&mut is_first) && K::HEADERS.iter().any(is_header) {
-            continue;
+        if std::mem::take(&mut is_first) {
+            header = K::HEADERS.iter().copied().find(|header| is_header(&header));
+            if header.is_some() {
+                continue;
+            }
         }
         if K::HEADERS.iter().all(|header| header.len() != fields.len()) {
             return Err(format!("line {number}: must have {}, got `{line}`", K::ROW));
@@ -134,7 +146,7 @@ fn read<K: TableKind>(file: impl BufRead) -> Result<Vec<Vec<f64>>, String> {
         }
     }
     check::<K>(&rows, &|row| format!("line {}", places.get(row).copied().unwrap_or_default()))?;
-    Ok(rows)
+    Ok((rows, header))
 }
 
 impl<K> Serialize for CsvTable<K> {
@@ -202,7 +214,7 @@ mod tests {
         let table = |text: &str| read::<Densities>(text.as_bytes());
         assert_eq!(
             table("height,density\n1e5,5e-7\n# c\n\n2e5,3e-10\n"),
-            Ok(vec![vec![1e5, 5e-7], vec![2e5, 3e-10]])
+            Ok((vec![vec![1e5, 5e-7], vec![2e5, 3e-10]], Some(&["height", "density"][..])))
         );
         let refused = |text: &str, words: &str| {
             let error = table(text).expect_err("damaged");

@@ -17,6 +17,7 @@ pub mod load_table;
 pub mod number;
 pub mod read_files;
 pub mod reader_units;
+pub mod response_table;
 pub mod structure;
 pub mod text_columns;
 pub mod text_file;

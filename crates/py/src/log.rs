@@ -4,16 +4,18 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use flexsc_core::frames::{FrameFault, FrameRequest, Frames};
 use flexsc_core::record;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use serde_json::json;
 
 use super::Scenario;
 use super::aside::aside;
 use super::columns;
 use super::commands::Commands;
-use super::error::log_error;
+use super::error::{log_error, scenario_error};
 
 /// A log in memory.
 #[pyclass(frozen, module = "flexsc._native")]
@@ -63,6 +65,22 @@ impl Log {
     fn columns<'py>(&self, py: Python<'py>, topic: &str) -> PyResult<Bound<'py, PyDict>> {
         let (log, topic) = (self.0.clone(), topic.to_owned());
         columns::rows_to_dict(py, aside(py, move |_| log.columns(&topic))?.map_err(log_error)?)
+    }
+
+    /// Frames of a camera, and where lines land, as JSON.
+    fn frames<'py>(
+        &self,
+        py: Python<'py>,
+        rate: f64,
+        exposure: Option<f64>,
+    ) -> PyResult<(Bound<'py, PyDict>, String)> {
+        let (log, request) = (self.0.clone(), FrameRequest { rate, exposure });
+        let found = aside(py, move |_| Frames::from_log(&log, request))?.map_err(|fault| match fault {
+            FrameFault::Log(error) => log_error(error),
+            FrameFault::Scenario(error) => scenario_error(error),
+            FrameFault::Request(why) => PyValueError::new_err(why),
+        })?;
+        Ok((columns::rows_to_dict(py, found.columns)?, json!(found.lines).to_string()))
     }
 }
 

@@ -9,6 +9,7 @@ mod authority;
 mod bound;
 mod compatibility;
 mod consistency;
+mod contrast_requirement;
 mod cost;
 mod coupling;
 mod custom_parts;
@@ -27,6 +28,7 @@ mod log;
 mod logged_scenario;
 mod magnitudes;
 mod meant;
+mod measured_path;
 pub mod metric_descriptions;
 mod mode_checks;
 mod motion_estimate;
@@ -70,6 +72,7 @@ pub use assessed_requirement::{
     mode_of,
 };
 pub use bound::BoundSpec;
+pub use contrast_requirement::ContrastRequirement;
 pub use cost::{Cost, MOST_RUNS};
 pub use custom_parts::{CustomLaw, CustomParts};
 pub use epoch::date_from_text;
@@ -78,6 +81,7 @@ pub use fault::{ACTIVE_FAULT, Fault, NO_FAULT, PartFailures};
 pub use fine_mirror::FineMirror;
 pub use line_of_sight::LineOfSight;
 pub use log::{LogSpec, SceneSpec};
+pub use measured_path::{MeasuredPath, PATH_HAS_NO_RUN};
 pub use optics::{LineSensitivity, OpticalElement};
 pub use reference_values::{Pointing, Reference};
 pub use requirement::{ErrorAxis, Interpretation, Limit, PointingIndex, Requirement, WindowConvention};
@@ -162,6 +166,7 @@ impl Scenario {
         let fault =
             epoch::validate(written.epoch.as_ref()).or_else(|| written.read_environment(parent, directory));
         let fault = fault.or_else(|| written.read_disturbances(directory));
+        let fault = fault.or_else(|| written.read_measured_paths(directory));
         if let Some(fault) = fault {
             return Err(document.at_key(&fault));
         }
@@ -200,8 +205,9 @@ impl Scenario {
     fn resolved(written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
         let mut study = ResolvedScenario::resolve(&written, &model)?;
         let mut errors = Vec::new();
-        study.requirements =
+        let checked =
             requirement_checks::assessed(&written, &model, study.assessment_period, &mut errors);
+        (study.requirements, study.contrasts) = (checked.of_runs, checked.of_contrast);
         match errors.into_iter().next() {
             None => {
                 Ok(Self { written, model, plan: None, linear: None, study, units: WrittenUnits::default() })
@@ -281,7 +287,7 @@ impl Scenario {
             RequirementSource::Error(_) | RequirementSource::Formula(_) => false,
         };
         self.reference.band.is_some()
-            || self.requirement.is_empty()
+            || self.requirement.iter().all(Requirement::is_of_contrast)
             || self.study.requirements.iter().any(limits_goal)
     }
 

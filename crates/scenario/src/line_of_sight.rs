@@ -12,6 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::fine_mirror::FineMirror;
+use super::measured_path::MeasuredPath;
 use super::optics::{self, LineSensitivity, OpticalElement};
 
 /// Part of a sample by which a rounded window may miss the next one.
@@ -35,6 +36,9 @@ pub struct LineOfSight {
     /// with `point`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub optics: Vec<OpticalElement>,
+    /// Measured responses of the line of sight to forces and torques at points, in place of the model: for linear tools.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub measured: Vec<MeasuredPath>,
     /// Mirror that turns the image back, in a loop of its own; errors of the line of sight are then those behind it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mirror: Option<FineMirror>,
@@ -133,6 +137,9 @@ impl LineOfSight {
         if let Some(fault) = self.mirror.as_ref().and_then(FineMirror::fault) {
             return Some(fault.within("mirror"));
         }
+        if let Some(fault) = self.measured_fault(body) {
+            return Some(fault);
+        }
         if let Some([from, to]) = self.window.map(|window| window.map(Time::get))
             && from >= to
         {
@@ -142,5 +149,26 @@ impl LineOfSight {
         let (window, period) = (self.jitter_window?.get(), self.period.seconds());
         let why = format!("must contain at least two samples, which are {period} s apart, got {window} s");
         at("jitter_window", why)
+    }
+
+    /// Returns the inconsistent key of a measured path, and the reason.
+    fn measured_fault(&self, body: &ThreeAxisModel) -> Option<ConfigError> {
+        let direction = self.direction();
+        let path = |own: &MeasuredPath| (own.point.clone(), own.part(), own.about as usize);
+        let fault = |(index, own): (usize, &MeasuredPath)| {
+            if body.point(&own.point).is_none() {
+                let why = format!("must be one of the body's points, {}, got `{}`", body.point_names(), own.point);
+                return Some(ConfigError::new("point", why));
+            }
+            if direction[own.about as usize].abs() > 1.0 - 1e-12 {
+                let why = "is along the line of sight, whose rotation is no error";
+                return Some(ConfigError::new("about", why));
+            }
+            let is_known = self.measured[..index].iter().any(|before| path(before) == path(own));
+            let why = "has a path already, from this component of the load to the line of sight about this axis";
+            own.validate().or_else(|| is_known.then(|| ConfigError::new("point", why)))
+        };
+        let mut all = self.measured.iter().enumerate();
+        all.find_map(|(index, own)| Some(fault((index, own))?.within(&format!("measured[{index}]"))))
     }
 }

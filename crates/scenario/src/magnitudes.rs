@@ -211,11 +211,8 @@ impl<'a> Magnitudes<'a> {
     fn look_at_limits(&mut self) {
         let scenario = self.scenario;
         let written = &scenario.written.requirement;
-        // A requirement of `[reference.pointing]` comes first.
-        let assessed = &scenario.study.requirements;
-        let first = assessed.len() - written.len();
-        for (place, of) in assessed.iter().enumerate().filter(|(_, of)| of.unit == "rad") {
-            let own = place.checked_sub(first);
+        for of in scenario.study.requirements.iter().filter(|of| of.unit == "rad") {
+            let own = written.iter().position(|own| own.name == of.name);
             if own.is_some_and(|index| written[index].limit.is_none()) {
                 continue;
             }

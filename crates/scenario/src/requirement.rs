@@ -34,14 +34,14 @@ pub struct Requirement {
     /// Condition during which the requirement counts, such as `"truth.sunlight < 0.5"` or `"blinded(star_tracker)"`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub during: Option<String>,
-    /// Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, or a metric, such as `fuel_kg` or
-    /// `fuel_axes_kg[2]`; of a list without an index, its largest element.
+    /// Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, the contrast `mtf` of an image, or a metric, such as
+    /// `fuel_kg` or `fuel_axes_kg[2]`; of a list without an index, its largest element.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quantity: Option<String>,
     /// Point of the line of sight, which is a `[[line_of_sight]]` of the scenario.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
-    /// Component of the error about an axis of the body; default: the norm of all components.
+    /// Component of the error about an axis of the body; default: the norm of all components, for `mtf` the worst.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axis: Option<ErrorAxis>,
     /// Pointing index of an error (ECSS-E-ST-60-10C); default: APE. A metric has none.
@@ -69,6 +69,15 @@ pub struct Requirement {
     /// Largest accepted value, in SI units or as a text with a unit that fits the quantity, such as "2 arcsec".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Limit>,
+    /// Spatial frequency (cycles/rad) across the image at which `mtf` is required, such as "0.5 cycles/arcsec".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spatial_frequency: Option<Positive>,
+    /// Length of the exposures (s) of the image for `mtf`; default: a long exposure, over all time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exposure: Option<Positive>,
+    /// Least accepted `mtf`, in place of a `limit`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least: Option<Share>,
     /// Probability at which the value is at most the limit; default: 1, always and in every run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level: Option<Share>,
@@ -125,6 +134,11 @@ pub enum ErrorAxis {
 }
 
 impl ErrorAxis {
+    /// Returns the letter of the axis.
+    pub fn letter(self) -> &'static str {
+        ["x", "y", "z"][self as usize]
+    }
+
     /// Returns the name of the axis.
     pub fn name(self) -> &'static str {
         AXES[self as usize]

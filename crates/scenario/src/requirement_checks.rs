@@ -9,6 +9,7 @@ use flexsc_spacecraft::body::BodyModel;
 use super::assessed_requirement::{
     AssessedRequirement, IndexWindow, RequirementLimit, RequirementSource, SampledError, SampledQuantity,
 };
+use super::contrast_requirement::{ContrastRequirement, MTF};
 use super::formula_checks::{formula, scope, scope_words};
 use super::requirement::{ErrorAxis, Interpretation, Limit, PointingIndex, Requirement, given};
 use super::spec::ScenarioSpec;
@@ -27,14 +28,22 @@ const ROUNDING: f64 = 1e-6;
 /// Quantities that are sampled.
 const SAMPLED: [&str; 3] = ["pointing_error", "rate_error", "line_of_sight"];
 
-/// Returns the requirements of a scenario, that of `reference.pointing.rms` first, and adds the errors of those that are
-/// inconsistent; `period` is the default sampling period.
+/// Requirements of a scenario.
+#[derive(Default)]
+pub struct CheckedRequirements {
+    /// Requirements that runs are judged by, that of `reference.pointing.rms` first.
+    pub of_runs: Vec<AssessedRequirement>,
+    /// Requirements on the contrast of an image.
+    pub of_contrast: Vec<ContrastRequirement>,
+}
+
+/// Returns the requirements of a scenario, and adds the errors of those that are inconsistent; `period` is the default sampling period.
 pub fn assessed(
     written: &ScenarioSpec,
     model: &BodyModel,
     period: Span,
     errors: &mut Vec<ConfigError>,
-) -> Vec<AssessedRequirement> {
+) -> CheckedRequirements {
     let pointing = written.reference.pointing.as_ref().and_then(|pointing| pointing.rms);
     let pointing = pointing.map(|most| AssessedRequirement {
         name: POINTING_RMS.to_owned(),
@@ -46,7 +55,7 @@ pub fn assessed(
         interpretation: Interpretation::Ensemble,
         confidence: None,
     });
-    let mut all: Vec<AssessedRequirement> = pointing.into_iter().collect();
+    let mut all = CheckedRequirements { of_runs: pointing.into_iter().collect(), of_contrast: Vec::new() };
     if written.requirement.len() > MOST_REQUIREMENTS {
         let why = format!("has at most {MOST_REQUIREMENTS} tables, got {}", written.requirement.len());
         errors.push(ConfigError::new("requirement", why));
@@ -55,14 +64,18 @@ pub fn assessed(
     let context = Context { written, model, period };
     for (index, requirement) in written.requirement.iter().enumerate() {
         let (key, name) = (format!("requirement[{index}]"), &requirement.name);
-        if name.is_empty() || all.iter().any(|other| other.name == *name) {
+        let is_taken = all.of_runs.iter().any(|other| other.name == *name)
+            || all.of_contrast.iter().any(|other| other.name == *name);
+        if name.is_empty() || is_taken {
             let why = format!("must be a name of its own, got `{name}`");
             errors.push(ConfigError::new("name", why).within(&key));
         }
-        match context.assess(requirement) {
-            Ok(judged) => all.push(judged),
-            Err(error) => errors.push(error.within(&key)),
-        }
+        let judged = if requirement.is_of_contrast() {
+            context.contrast(requirement, &key).map(|own| all.of_contrast.push(own))
+        } else {
+            context.assess(requirement).map(|own| all.of_runs.push(own))
+        };
+        errors.extend(judged.err().map(|error| error.within(&key)));
     }
     all
 }
@@ -75,7 +88,18 @@ struct Context<'a> {
 }
 
 impl Context<'_> {
+    fn contrast(&self, requirement: &Requirement, key: &str) -> Result<ContrastRequirement, ConfigError> {
+        let line = match self.line_of_sight(requirement)? {
+            SampledQuantity::LineOfSight(index, point) => (index, point),
+            SampledQuantity::PointingError | SampledQuantity::RateError => (0, String::new()),
+        };
+        requirement.contrast(key, line)
+    }
+
     fn assess(&self, requirement: &Requirement) -> Result<AssessedRequirement, ConfigError> {
+        if let Some(key) = given(&requirement.contrast_keys()) {
+            return Err(ConfigError::new(key, "is for `quantity = \"mtf\"`, the contrast of an image"));
+        }
         let at = |key: &str, why: String| Err(ConfigError::new(key, why));
         if let [first, others @ ..] = &absent_keys(requirement)[..]
             && !others.is_empty()
@@ -192,9 +216,10 @@ impl Context<'_> {
         let lines = &self.written.line_of_sight;
         let points: Vec<&str> = lines.iter().map(|line| line.point.as_str()).collect();
         let why = match &requirement.point {
-            _ if points.is_empty() => {
-                "`line_of_sight` needs a `[[line_of_sight]]` in the scenario".to_owned()
-            }
+            _ if points.is_empty() => format!(
+                "`{}` needs a `[[line_of_sight]]` in the scenario",
+                requirement.quantity.as_deref().unwrap_or("line_of_sight")
+            ),
             None => format!("is missing: the point of one of the lines of sight, `{}`", points.join("`, `")),
             Some(point) => match points.iter().filter(|other| *other == point).count() {
                 1 => {
@@ -357,7 +382,7 @@ fn metric_source(
     let known = metric_descriptions::meaning(list, Some(model));
     let Some(meaning) = known else {
         let names: Vec<&str> =
-            SAMPLED.into_iter().chain(metric_descriptions::ALL.iter().map(|meaning| meaning.name)).collect();
+            SAMPLED.into_iter().chain([MTF]).chain(metric_descriptions::ALL.iter().map(|meaning| meaning.name)).collect();
         let hint = nearest(name, &names).map_or_else(
             || "`flexsc schema --metrics` lists them".to_owned(),
             |close| format!("did you mean `{close}`?"),

@@ -23,7 +23,7 @@ use flexsc_spacecraft::disturbance::Disturbance;
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::{Cholesky, Matrix3};
 
-use super::{AppendageDrives, AssessedRequirement, Scenario, ScenarioSpec, plate_mounts};
+use super::{AppendageDrives, AssessedRequirement, ContrastRequirement, Scenario, ScenarioSpec, plate_mounts};
 
 /// Tolerance for rounded shares.
 const ROUNDING: f64 = 1e-9;
@@ -88,8 +88,10 @@ pub struct ResolvedScenario {
     /// Bands about the target of each mode of operation, for each axis; of a fraction, that of the distance at the start of
     /// the mode.
     pub mode_bands: Vec<Vec<ErrorBand>>,
-    /// Requirements, that of `reference.pointing.rms` first.
+    /// Requirements that runs are judged by, that of `reference.pointing.rms` first.
     pub requirements: Vec<AssessedRequirement>,
+    /// Requirements on the contrast of an image, which linear tools judge.
+    pub contrasts: Vec<ContrastRequirement>,
 }
 
 impl ResolvedScenario {

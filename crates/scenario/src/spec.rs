@@ -256,6 +256,8 @@ impl ScenarioSpec {
         }
         self.appendage.iter_mut().for_each(Appendage::inline_modes);
         self.disturbance.iter_mut().for_each(Disturbance::inline);
+        let paths = self.line_of_sight.iter_mut().flat_map(|line| &mut line.measured);
+        paths.for_each(|path| path.table.inline());
         let date = self.date_ns();
         if let Some(around) = &mut self.environment {
             around.inline_files(date);
@@ -278,6 +280,21 @@ impl ScenarioSpec {
         let mut faults = disturbances
             .filter_map(|(index, own)| Some(own.read(directory)?.within(&format!("disturbance[{index}]"))));
         faults.next()
+    }
+
+    /// Reads the files of the measured paths to lines of sight.
+    pub(super) fn read_measured_paths(&mut self, directory: &Path) -> Option<ConfigError> {
+        let lines = self.line_of_sight.iter_mut().enumerate();
+        let paths = lines.flat_map(|(line, own)| own.measured.iter_mut().enumerate().map(move |path| (line, path)));
+        paths.into_iter().find_map(|(line, (index, path))| {
+            Some(path.read(directory)?.within(&format!("line_of_sight[{line}].measured[{index}]")))
+        })
+    }
+
+    /// Returns the key of the first measured path, with which a scenario has no run.
+    pub fn measured_path(&self) -> Option<String> {
+        let line = self.line_of_sight.iter().position(|line| !line.measured.is_empty())?;
+        Some(format!("line_of_sight[{line}].measured"))
     }
 
     /// Returns true if the scenario has disturbances.

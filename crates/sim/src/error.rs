@@ -3,6 +3,7 @@
 use flexsc_control::custom::PartError;
 use flexsc_numerics::time::Instant;
 use flexsc_record::RecordError;
+use flexsc_scenario::PATH_HAS_NO_RUN;
 use flexsc_spacecraft::load_density::TABLE_HAS_NO_RUN;
 use thiserror::Error;
 
@@ -81,6 +82,12 @@ pub enum SimulationError {
     DensityTable {
         /// Index of the disturbance.
         index: usize,
+    },
+    /// A measured path to a line of sight is a response over frequency, which a run does not have.
+    #[error("`{key}` {PATH_HAS_NO_RUN}")]
+    MeasuredPath {
+        /// Key of the paths.
+        key: String,
     },
     /// A custom part cannot go on.
     #[error("the {role} at t = {at} s: {source}")]

@@ -28,6 +28,8 @@ pub struct Loads {
     /// Instants, latest first, at which the waveform has a break, a disturbance or the environment changes, the
     /// frequency drift has a kink, or the appendage drives reach the angles at which the modes are replaced.
     scheduled_changes: Vec<Instant>,
+    /// Key of measured paths, with which there is no run.
+    measured_path: Option<String>,
     /// Next instant of `scheduled_changes`, or of a random change of a disturbance.
     next_change: Option<Instant>,
     /// Next instant at which a load changes without a command.
@@ -69,6 +71,7 @@ impl Loads {
                 .map(|(_, spec)| OwnDisturbance::new(&**spec, scenario, seed))
                 .collect(),
             scheduled_changes: edges,
+            measured_path: scenario.measured_path(),
             next_change: None,
             due: None,
             wrench: Wrench::default(),
@@ -78,6 +81,11 @@ impl Loads {
         };
         loads.find_next_change();
         loads
+    }
+
+    /// Returns the key of measured paths, with which there is no run.
+    pub fn measured_path(&self) -> Option<&String> {
+        self.measured_path.as_ref()
     }
 
     /// Returns the index of a broadband disturbance that a run cannot simulate, if there is one.

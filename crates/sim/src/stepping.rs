@@ -147,6 +147,9 @@ impl Simulation {
         if let Some(index) = self.loads.density_without_run() {
             return Err(SimulationError::DensityTable { index });
         }
+        if let Some(key) = self.loads.measured_path() {
+            return Err(SimulationError::MeasuredPath { key: key.clone() });
+        }
         let now = self.clock.now();
         if self.recorder.open(now, record)? {
             self.plant.evaluate(now)?;

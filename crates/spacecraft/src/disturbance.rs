@@ -103,7 +103,7 @@ impl Disturbance {
     }
 
     /// Returns the name of the point at which it acts.
-    fn place<'a>(&'a self, body: &'a ThreeAxisModel) -> &'a str {
+    pub fn place<'a>(&'a self, body: &'a ThreeAxisModel) -> &'a str {
         let first = body.points.first().map_or("", |point| &point.name);
         self.point.as_deref().unwrap_or(first)
     }

@@ -4,8 +4,9 @@ use std::f64::consts::TAU;
 
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::load_density_table::LoadDensityTable;
-use flexsc_numerics::quantity::{NonNegative, Positive};
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
 use flexsc_numerics::time::Span;
+use nalgebra::{Matrix6, SymmetricEigen, Vector6};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -17,10 +18,13 @@ pub(crate) const STEPS: f64 = 20.0;
 /// Least ratio of the corners, at which the filters of runs keep half of the digits.
 pub(crate) const LEAST_RATIO: f64 = 1e-8;
 
+/// Least eigenvalue of a correlation matrix, for rounded numbers.
+const LEAST: f64 = -1e-9;
+
 /// Reason why a table is refused in runs.
 pub const TABLE_HAS_NO_RUN: &str = "has no run: `spectrum` has it; for runs give `force` or `torque` between the corners `lower` and `upper`";
 
-/// Stationary Gaussian force and torque at a point, whose components are independent: one-sided densities that are constant between two
+/// Stationary Gaussian force and torque at a point, whose components are independent but for `correlation`: one-sided densities that are constant between two
 /// corners, or a table over frequency.
 ///
 /// Below `lower` a density falls with the fourth power of the frequency, above `upper` with its inverse: filters of the second order
@@ -34,6 +38,10 @@ pub struct LoadDensity {
     /// One-sided density of the torque about x, y and z between the corners ((N m)²/Hz).
     #[serde(default)]
     pub torque: [NonNegative; 3],
+    /// Correlation of the components: three rows for the force along x, y and z, or six with the torque about x, y and z; symmetric, with 1
+    /// on the diagonal. Default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub correlation: Option<Vec<Vec<Finite>>>,
     /// Lower corner (rad/s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower: Option<Positive>,
@@ -78,6 +86,88 @@ impl LoadDensity {
         }
     }
 
+    /// Returns the correlation of the components, in which those without a density are alone.
+    fn correlations(&self) -> Matrix6<f64> {
+        let given = self.correlation.as_deref().unwrap_or_default();
+        Matrix6::from_fn(|row, column| {
+            let own = given.get(row).and_then(|row| row.get(column)).map_or(0.0, |value| value.get());
+            if row == column {
+                1.0
+            } else if self.has_part(row) && self.has_part(column) {
+                own
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// Returns a factor F of the correlation of the components, F F': the components are F times independent ones.
+    pub(crate) fn correlation_factor(&self) -> Matrix6<f64> {
+        let correlations = self.correlations();
+        if correlations == Matrix6::identity() {
+            return correlations;
+        }
+        let SymmetricEigen { eigenvectors, eigenvalues } = correlations.symmetric_eigen();
+        let roots = eigenvalues.map(|value| value.max(0.0).sqrt());
+        eigenvectors * Matrix6::from_diagonal(&Vector6::from(roots)) * eigenvectors.transpose()
+    }
+
+    /// Returns the loads whose powers add up to that of the density: each component, and the sum of each pair that is correlated.
+    pub fn loads(&self) -> Vec<Vec<usize>> {
+        let single = (0..6).filter(|place| self.has_part(*place)).map(|place| vec![place]);
+        single.chain(self.pairs().into_iter().map(|(pair, _)| pair.to_vec())).collect()
+    }
+
+    /// Returns the density of each of [`Self::loads`] at a frequency (rad/s): that of correlated components is less their common part, which
+    /// may be negative.
+    pub fn load_densities(&self, frequency: f64) -> Vec<f64> {
+        let mut each = self.at(frequency);
+        let densities = each;
+        let mut common = Vec::new();
+        for ([one, other], correlation) in self.pairs() {
+            let both = correlation * f64::sqrt(densities[one] * densities[other]);
+            each[one] -= both;
+            each[other] -= both;
+            common.push(both);
+        }
+        let single = (0..6).filter(|place| self.has_part(*place)).map(|place| each[place]);
+        single.chain(common).collect()
+    }
+
+    /// Returns the pairs of components that are correlated.
+    fn pairs(&self) -> Vec<([usize; 2], f64)> {
+        let correlations = self.correlations();
+        let pairs = (0..6).flat_map(|one| (one + 1..6).map(move |other| [one, other]));
+        let pairs = pairs.map(|[one, other]| ([one, other], correlations[(one, other)]));
+        pairs.filter(|(_, correlation)| *correlation != 0.0).collect()
+    }
+
+    /// Returns the reason for which the correlation is none.
+    fn correlation_fault(&self) -> Option<String> {
+        let given = self.correlation.as_ref()?;
+        let size = given.len();
+        if ![3, 6].contains(&size) || given.iter().any(|row| row.len() != size) {
+            return Some("must have three rows of three numbers, or six of six".to_owned());
+        }
+        let at = |row: usize, column: usize| given[row][column].get();
+        for row in 0..size {
+            for column in 0..=row {
+                let (one, other) = (at(row, column), at(column, row));
+                if row == column && one != 1.0 {
+                    return Some(format!("must have 1 on the diagonal, got {one} in row {}", row + 1));
+                }
+                if one != other {
+                    let place = format!("rows {} and {}", column + 1, row + 1);
+                    return Some(format!("must be symmetric, got {other} and {one} in {place}"));
+                }
+            }
+        }
+        let least = self.correlations().symmetric_eigenvalues().min();
+        (least < LEAST).then(|| {
+            format!("must be positive semidefinite, or no components have it: its least eigenvalue is {least:.4}")
+        })
+    }
+
     /// Returns the frequencies (rad/s) at which the density bends: its corners, or the rows of its table.
     pub fn knots(&self) -> Vec<f64> {
         match self.corners() {
@@ -119,6 +209,9 @@ impl LoadDensity {
             if let Some(why) = table.fault() {
                 return refused("table", why);
             }
+            if let Some(why) = self.correlation_fault() {
+                return refused("correlation", why);
+            }
             let is_given = self.lower.is_some() || self.upper.is_some() || self.levels() != [0.0; 6];
             let why = "has the densities of `force` and `torque` at all frequencies: leave those and the corners out";
             return if is_given { refused("table", why.to_owned()) } else { None };
@@ -129,6 +222,9 @@ impl LoadDensity {
         let corner = [("lower", self.lower), ("upper", self.upper)];
         if let Some((key, _)) = corner.iter().find(|(_, corner)| corner.is_none()) {
             return refused(key, "must be given: the corner of the density, or a `table`".to_owned());
+        }
+        if let Some(why) = self.correlation_fault() {
+            return refused("correlation", why);
         }
         let [lower, upper] = self.corners()?;
         if lower >= upper {

@@ -84,11 +84,14 @@ impl ShapedLoad {
         let corners = density.corners()?;
         let filters = Arc::new(Filters::new(corners)?);
         let given = (0..6).filter(|place| density.has_part(*place));
+        let (levels, factor) = (density.levels(), density.correlation_factor());
         let part = |place: usize| {
-            // White noise of the one-sided density S has the intensity S/2.
-            let size = f64::sqrt(0.5 * density.levels()[place] * corners[1]);
             let mut effect = ForceEffect::default();
-            effect.add_scaled(&unit(place), size);
+            for (row, level) in levels.iter().enumerate().filter(|(row, _)| factor[(*row, place)] != 0.0) {
+                // White noise of the one-sided density S has the intensity S/2.
+                let size = f64::sqrt(0.5 * level * corners[1]) * factor[(row, place)];
+                effect.add_scaled(&unit(row), size);
+            }
             let state = filters.settled * Vector4::from_fn(|_, _| draws.normal());
             Part { unit: effect, state, mean: 0.0 }
         };

@@ -5,6 +5,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::{BudgetLevel, CampaignBudget, ErrorSources, LEVELS};
+use crate::noise::RequiredContrast;
 
 /// Budgets of all pointing indices that a scenario limits, and the verdicts of its requirements.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -14,6 +15,9 @@ pub struct PointingBudget {
     /// Budget of each pointing index, in the order of the requirements.
     #[schemars(extend("x-name" = "indices"))]
     pub budgets: Vec<IndexBudget>,
+    /// Contrasts of images that requirements ask for, with what each source costs.
+    #[schemars(extend("x-key" = "name"))]
+    pub contrasts: Vec<RequiredContrast>,
     /// Verdict of each requirement: `name`, `verdict`, `value`, `limit` and the confidence of the campaign.
     pub requirements: Vec<Json>,
 }

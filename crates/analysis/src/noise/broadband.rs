@@ -11,10 +11,10 @@ use flexsc_formats::document::ConfigError;
 use flexsc_formats::reader_units::number;
 use flexsc_numerics::quadrature::kronrod;
 use flexsc_spacecraft::load_density::LoadDensity;
-use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::lines::LineLoop;
+use super::measured_loads::VibrationLoad;
 use super::source_motion::SourceMotion;
 use super::spectral_line::SpectralLine;
 use super::transfer::{LoadResponse, LoopTransfer, Resonance};
@@ -46,8 +46,8 @@ pub(super) struct BroadbandSource<'a> {
     /// Key of the source.
     pub key: String,
     pub density: &'a LoadDensity,
-    /// Components of the load, each with its place in the density and the number of its column.
-    pub parts: Vec<(usize, usize)>,
+    /// Numbers of its loads.
+    pub loads: Vec<usize>,
 }
 
 /// Response at one node of the integral over frequency.
@@ -70,7 +70,7 @@ struct Interval {
 pub(super) fn broadband(
     lines: &LineLoop<'_>,
     outputs: &[usize],
-    loads: &[DVector<f64>],
+    loads: &[VibrationLoad],
     sources: Vec<BroadbandSource<'_>>,
     others: &[f64],
 ) -> Result<(Vec<f64>, Vec<Vec<SourceMotion>>), ConfigError> {
@@ -138,13 +138,12 @@ impl Integral<'_> {
         frequency: f64,
         responses: &[LoadResponse],
     ) -> SourcePower {
-        let densities = source.density.at(frequency);
+        let densities = source.density.load_densities(frequency);
         let mut sum = SourcePower { lines: Vec::new(), density: 0.0, sampled: 0.0 };
-        let before =
-            source.parts.iter().map(|(_, column)| responses[*column].lines[output].clone()).collect();
+        let before = source.loads.iter().map(|load| responses[*load].lines[output].clone()).collect();
         let behind = self.transfer.behind_mirror(output, before);
-        for ((place, column), lines) in source.parts.iter().zip(behind) {
-            let (own, size) = (&responses[*column], densities[*place]);
+        for ((load, size), lines) in source.loads.iter().zip(densities).zip(behind) {
+            let own = &responses[*load];
             sum.sampled += size
                 * if self.transfer.has_mirror(output) {
                     lines.iter().map(|(_, amplitude)| amplitude.norm_sqr()).sum()
@@ -259,7 +258,7 @@ impl Integral<'_> {
     /// Returns those aliases by which the measurements see a part of all that is not small.
     fn measured(&self, aliases: Vec<(Resonance, f64)>) -> Vec<(Resonance, f64)> {
         let power = |([frequency, width], _): &(Resonance, f64)| -> Vec<f64> {
-            let Some(squares) = self.transfer.measured_squares(*frequency) else { return Vec::new() };
+            let Some(squares) = self.transfer.sensed_squares(*frequency) else { return Vec::new() };
             let mut sums = vec![0.0; squares.nrows()];
             for source in &self.sources {
                 let densities = source.density.at(*frequency);

@@ -8,106 +8,107 @@
 
 use std::f64::consts::PI;
 
-use flexsc_numerics::quadrature::nodes;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::exposed_motion::{ExposedMotion, about_mean_square, instants};
 use super::noisy_loop::NoisyLoop;
 use super::spectral_line::SpectralLine;
-use super::windows::{Functional, j0};
+use super::vibration::Vibration;
+use super::windows::j0;
 
-/// Harmonics of the fastest motion that the contrast over an exposure contains.
-const HARMONICS: f64 = 4.0;
-/// Most radians of the fastest harmonic in an exposure: faster motion has hardly any mean, and its amplitude is even.
-const MOST_TURN: f64 = 600.0;
-/// Part of the power of broadband motion that may be above the fastest motion.
-const VANISHING: f64 = 1e-6;
-
-/// Blur of an image by Gaussian noise over the time of an exposure.
+/// Blur of an image over the time of an exposure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageBlur {
     /// Length of the exposure (s); `None` for one without end.
     exposure: Option<f64>,
-    /// Times from the middle of the exposure (s), their parts of it, and variances about the mean (rad²).
+    /// Times in the exposure.
     instants: Vec<BlurInstant>,
-    /// Lines that always move the image.
-    lines: Vec<SpectralLine>,
+    /// Lines that always move the image, of each machine.
+    lines: Vec<Vec<SpectralLine>>,
 }
 
-/// Variance of the noise at one time of an exposure.
-#[derive(Copy, Clone, Debug, PartialEq)]
+/// Variances of Gaussian motion at one time of an exposure.
+#[derive(Clone, Debug, PartialEq)]
 struct BlurInstant {
+    /// Time from the middle (s).
     time: f64,
+    /// Part of the exposure.
     part: f64,
-    variance: f64,
+    /// Variance about the mean (rad²) from each Gaussian source.
+    variances: Vec<f64>,
 }
 
 impl ImageBlur {
-    /// Returns the blur by an output of a loop during exposures that begin at samples of the law, and by Gaussian motion that is given
-    /// as lines, for other lines up to a frequency (rad/s).
+    /// Returns the blur by an output of a loop and by machines during exposures (s) that begin at samples of the law, for other lines up
+    /// to a frequency (rad/s). Its sources are those of the loop, and then those of the machines.
     ///
     /// # Errors
     /// See [`NoisyLoop::window_variances`].
     pub fn new(
         noisy: &NoisyLoop,
+        vibration: &Vibration,
         output: usize,
         (exposure, fastest): (Option<f64>, f64),
-        gaussian: &[SpectralLine],
     ) -> Result<Self, String> {
-        let Some(length) = exposure else {
-            let bands: f64 = gaussian.iter().map(SpectralLine::mean_square).sum();
-            return Ok(Self::long(noisy.mean_variances(&[output])[0].iter().sum::<f64>() + bands));
-        };
-        noisy.check_time("window", length)?;
-        let fastest = noisy.frequencies.iter().copied().fold(fastest, f64::max).max(upper_edge(gaussian));
-        let moments = noisy.moments(output, [0.0, noisy.period]);
-        let variance = |time: f64| {
-            let about_mean = Functional::mean(0.0, length, -1.0).with_point(time + 0.5 * length);
-            let bands =
-                gaussian.iter().map(|line| line.mean_square() * about_mean_square(line, length, time));
-            noisy.functional_variances(output, &about_mean, &moments).iter().sum::<f64>() + bands.sum::<f64>()
-        };
-        Ok(Self::over_exposure(length, fastest, variance))
+        let gaussian = ExposedMotion::new(noisy, vibration, output, exposure)?;
+        let lines: Vec<Vec<SpectralLine>> =
+            vibration.sources_of(output, false).map(|own| own.lines.clone()).collect();
+        let of_lines = lines.iter().flatten().map(|line| line.frequency_rad_s);
+        let fastest = of_lines.fold(fastest.max(gaussian.fastest()), f64::max);
+        let instant =
+            |(time, part): (f64, f64)| BlurInstant { time, part, variances: gaussian.variances(time) };
+        let instants = instants(exposure, fastest).into_iter().map(instant).collect();
+        Ok(Self { exposure, instants, lines })
     }
 
-    /// Returns the blur of an exposure without end by a variance (rad²).
-    pub fn long(variance: f64) -> Self {
-        Self {
-            exposure: None,
-            instants: vec![BlurInstant { time: 0.0, part: 1.0, variance }],
-            lines: Vec::new(),
-        }
+    /// Returns the blur by lines alone during exposures (s), or during one without end.
+    pub fn by_lines(exposure: Option<f64>, lines: Vec<SpectralLine>) -> Self {
+        let fastest = lines.iter().map(|line| line.frequency_rad_s).fold(0.0, f64::max);
+        Self { lines: vec![lines], ..Self::by_variance(exposure, fastest, |_| 0.0) }
     }
 
-    /// Returns the blur of an exposure (s) by a variance (rad²) over the time from its middle, and by motion up to a frequency
-    /// (rad/s).
-    fn over_exposure(length: f64, fastest: f64, variance: impl Fn(f64) -> f64) -> Self {
-        let rate = (HARMONICS * fastest).min(MOST_TURN / length);
-        let instant = |(from_start, weight): (f64, f64)| {
-            let time = from_start - 0.5 * length;
-            BlurInstant { time, part: weight / length, variance: variance(time) }
-        };
-        let instants = nodes(length, rate).into_iter().map(instant).collect();
-        Self { exposure: Some(length), instants, lines: Vec::new() }
-    }
-
-    /// Returns the blur with lines that always move the image.
-    #[must_use]
-    pub fn with_lines(self, lines: Vec<SpectralLine>) -> Self {
-        Self { lines, ..self }
+    /// Returns the blur of an exposure (s) by a variance (rad²) over the time from its middle, and by motion up to a frequency (rad/s).
+    pub fn by_variance(exposure: Option<f64>, fastest: f64, variance: impl Fn(f64) -> f64) -> Self {
+        let instant =
+            |(time, part): (f64, f64)| BlurInstant { time, part, variances: vec![variance(time)] };
+        let instants = instants(exposure, fastest).into_iter().map(instant).collect();
+        Self { exposure, instants, lines: Vec::new() }
     }
 
     /// Returns the contrast at a spatial frequency (cycles/rad) of an image that also moves by lines (rad).
     pub fn contrast(&self, frequency: f64, lines: &[SpectralLine]) -> f64 {
+        self.contrast_of(frequency, lines, &|_| true)
+    }
+
+    /// Returns the contrast at a spatial frequency (cycles/rad) of an image that also moves by lines (rad), by those of the own sources
+    /// that count.
+    pub fn contrast_of(
+        &self,
+        frequency: f64,
+        lines: &[SpectralLine],
+        counts: &dyn Fn(usize) -> bool,
+    ) -> f64 {
         let turn = 2.0 * PI * frequency;
+        let gaussian = self.instants.first().map_or(0, |instant| instant.variances.len());
+        let own: Vec<&SpectralLine> = self
+            .lines
+            .iter()
+            .enumerate()
+            .filter(|(machine, _)| counts(gaussian + machine))
+            .flat_map(|(_, lines)| lines)
+            .chain(lines)
+            .collect();
         let contrast_at = |instant: &BlurInstant| {
-            let of_line = |line: &SpectralLine| {
+            let of_line = |line: &&SpectralLine| {
                 let square =
                     self.exposure.map_or(1.0, |length| about_mean_square(line, length, instant.time));
                 libm::j0(turn * line.amplitude * square.max(0.0).sqrt())
             };
-            let noise = libm::exp(-0.5 * turn * turn * instant.variance);
-            instant.part * noise * self.lines.iter().chain(lines).map(of_line).product::<f64>()
+            let variances = instant.variances.iter().enumerate();
+            let variance: f64 = variances.filter(|(source, _)| counts(*source)).map(|(_, own)| own).sum();
+            let noise = libm::exp(-0.5 * turn * turn * variance);
+            instant.part * noise * own.iter().map(of_line).product::<f64>()
         };
         self.instants.iter().map(contrast_at).sum()
     }
@@ -146,26 +147,10 @@ impl ImageFactors {
     }
 }
 
-/// Returns the square by which the amplitude of a sine about its mean over an exposure (s) exceeds its own, at a time from the middle.
-fn about_mean_square(line: &SpectralLine, length: f64, time: f64) -> f64 {
-    let mean = j0(0.5 * line.frequency_rad_s * length);
-    1.0 - 2.0 * mean * libm::cos(line.frequency_rad_s * time) + mean * mean
-}
-
-/// Returns the frequency (rad/s) up to which lines have all but a vanishing part of their power.
-fn upper_edge(lines: &[SpectralLine]) -> f64 {
-    let mut left: f64 = VANISHING * lines.iter().map(SpectralLine::mean_square).sum::<f64>();
-    let mut sorted: Vec<&SpectralLine> = lines.iter().collect();
-    sorted.sort_by(|a, b| b.frequency_rad_s.total_cmp(&a.frequency_rad_s));
-    let edge = sorted.into_iter().find(|line| {
-        left -= line.mean_square();
-        left < 0.0
-    });
-    edge.map_or(0.0, |line| line.frequency_rad_s)
-}
-
 #[cfg(test)]
 mod tests {
+    use flexsc_numerics::quadrature::nodes;
+
     use super::*;
 
     /// Exposure (s) and spatial frequency (cycles/rad) of all numbers.
@@ -184,12 +169,12 @@ mod tests {
     #[test]
     fn a_line_loses_contrast_by_bessel_functions() {
         let lines = [line(50.0)];
-        close(ImageBlur::long(0.0).contrast(FREQUENCY, &lines), 0.642_511_836_577_573, 1e-15);
-        let blur = ImageBlur::over_exposure(EXPOSURE, lines[0].frequency_rad_s, |_| 0.0);
-        close(blur.contrast(FREQUENCY, &lines), 0.951_749_337_277_069_1, 1e-14);
+        close(ImageBlur::by_variance(None, 0.0, |_| 0.0).contrast(FREQUENCY, &lines), 0.642_511_836_577_573, 1e-15);
+        let blur = ImageBlur::by_lines(Some(EXPOSURE), lines.to_vec());
+        close(blur.contrast(FREQUENCY, &[]), 0.951_749_337_277_069_1, 1e-14);
         // Beyond the first zero of J0 light and dark change places.
         let far = SpectralLine { amplitude: 3.0 / (2.0 * PI * FREQUENCY), ..lines[0] };
-        close(ImageBlur::long(0.0).contrast(FREQUENCY, &[far]), -0.260_051_954_901_933_4, 1e-14);
+        close(ImageBlur::by_variance(None, 0.0, |_| 0.0).contrast(FREQUENCY, &[far]), -0.260_051_954_901_933_4, 1e-14);
     }
 
     /// Variance of a mode of 50 Hz and 1 % under white noise about its mean over the exposure, by its covariance.
@@ -221,11 +206,11 @@ mod tests {
     fn noise_loses_contrast_by_its_variance_over_the_exposure() {
         close(mode(0.0), 3.933_708_076_601_503e-16, 1e-27);
         close(mode(0.5 * EXPOSURE), 3.232_248_891_272_251e-14, 1e-27);
-        let blur = ImageBlur::over_exposure(EXPOSURE, 2.0 * PI * 50.0, mode);
+        let blur = ImageBlur::by_variance(Some(EXPOSURE), 2.0 * PI * 50.0, mode);
         close(blur.contrast(FREQUENCY, &[]), 0.986_367_500_048_431_3, 1e-14);
         // Not the product of both alone, 0.95943337.
         close(blur.contrast(FREQUENCY, &[line(37.0)]), 0.959_708_713_158_169_7, 1e-14);
-        let long = ImageBlur::long(0.09e-12);
+        let long = ImageBlur::by_variance(None, 0.0, |_| 0.09e-12);
         close(long.contrast(FREQUENCY, &[line(37.0)]), 0.574_989_735_754_48, 1e-13);
     }
 

@@ -141,7 +141,7 @@ impl MirrorOutput {
             mirrors(scenario).find_map(|(line, mirror)| {
                 let axis = |name: &str| {
                     let axis = output.name.strip_prefix(&format!("{name}{line}_"))?;
-                    (axis.len() == 1).then_some(())
+                    (!axis.contains('_')).then_some(())
                 };
                 let is_error = axis("line_of_sight").map(|()| MirrorTap::Error);
                 let tap = is_error.or(axis("mirror").map(|()| MirrorTap::Angle))?;

@@ -10,7 +10,7 @@
 //!   [`NoisyLoop::welch_expectation`];
 //! - the variance of a weighted sum of samples, as a pointing index is: [`OutputSamples`];
 //! - pointing indices over windows in continuous time: [`NoisyLoop::window_variances`], and [`WindowWeights`] for sines and densities;
-//! - the contrast of an image that moves with an output, over an exposure: [`ImageBlur`].
+//! - the contrast of an image that moves with an output, over an exposure: [`ImageBlur`], and [`RequiredContrast`] for requirements.
 //!
 //! [`Vibration`] has the motion under machines at points of the body: broadband loads as lines of small bands over frequency, and
 //! lines at the worst frequency of a machine.
@@ -21,10 +21,13 @@
 mod broadband;
 mod covariance;
 mod density;
+mod energy_circle;
+mod exposed_motion;
 mod image_contrast;
 mod imbalance;
 mod line_solver;
 mod lines;
+mod measured_loads;
 pub(crate) mod mirror_states;
 mod motion;
 mod noisy_loop;
@@ -32,6 +35,7 @@ mod output;
 mod output_samples;
 mod period_rows;
 mod report;
+mod required_contrast;
 mod sample_times;
 mod schedule;
 mod source;
@@ -47,12 +51,14 @@ mod windows;
 mod worst_speed;
 
 pub use density::{OutputDensity, cumulative_rms};
+pub use energy_circle::EnergyCircle;
 pub use image_contrast::{ImageBlur, ImageFactors};
 pub use imbalance::{WheelImbalance, WheelLines, WheelSpectrum};
 pub use lines::{LineLoop, TurningMotion};
 pub use noisy_loop::{NoiseError, NoisyLoop};
 pub use output_samples::OutputSamples;
 pub use report::{MachineLines, NoiseReport, NoiseRequest, OutputNoise};
+pub use required_contrast::{ContrastCost, ContrastPoint, RequiredContrast};
 pub use sample_times::{SamplePlace, SampleSets, SampleTimes};
 pub use source_motion::{SourceMotion, WorstTone};
 pub use spectral_line::{OutputLines, SineLoad, SpectralLine};

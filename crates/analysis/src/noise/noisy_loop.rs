@@ -8,7 +8,7 @@ use nalgebra::{Complex, DMatrix};
 use super::covariance::DoublingSeries;
 use super::mirror_states::with_mirrors;
 use super::motion::Motion;
-use super::output::outputs;
+use super::output::{is_line_about_axis, outputs};
 use super::period_rows::PeriodRows;
 use super::source::sources;
 use crate::eigenvalues::eigenvalues;
@@ -80,6 +80,13 @@ impl fmt::Display for NoiseError {
 }
 
 impl std::error::Error for NoiseError {}
+
+impl NoiseError {
+    /// Returns the fault of wheels without a largest speed.
+    pub(super) fn without_speed() -> Self {
+        Self::Request("speeds must be given: the scenario gives no largest speed of its wheels".to_owned())
+    }
+}
 
 impl From<ConfigError> for NoiseError {
     fn from(fault: ConfigError) -> Self {
@@ -161,7 +168,7 @@ impl NoisyLoop {
 
     fn named_or_sights(&self, names: &[&str]) -> Vec<usize> {
         let is_chosen = |signal: &Signal| {
-            names.contains(&signal.name.as_str()) || signal.name.starts_with("line_of_sight")
+            names.contains(&signal.name.as_str()) || is_line_about_axis(&signal.name)
         };
         (0..self.outputs.len()).filter(|index| is_chosen(&self.outputs[*index])).collect()
     }

@@ -51,8 +51,17 @@ fn error_rows(scenario: &Scenario, order: usize) -> Vec<(Signal, OutputRow)> {
     AXES.iter().enumerate().map(row).collect()
 }
 
-/// Returns the error of each line of sight about the axes of the body, of one with a mirror also before the mirror, and the angle
-/// of the mirror. Where a mirror is not among the states of the body, all three have the row before it.
+/// Returns true for the name of the error of a line of sight about an axis of the body.
+pub fn is_line_about_axis(name: &str) -> bool {
+    let about = name.strip_prefix("line_of_sight").and_then(|rest| rest.split_once('_'));
+    about.is_some_and(|(_, about)| !DIAGONALS.iter().any(|(_, diagonal)| *diagonal == about))
+}
+
+/// Pairs of axes, and the names of the axes between them.
+pub const DIAGONALS: [([usize; 2], &str); 3] = [([0, 1], "xy"), ([0, 2], "xz"), ([1, 2], "yz")];
+
+/// Returns the error of each line of sight about the axes of the body and those between them, of one with a mirror also before the
+/// mirror, and the angle of the mirror. Where a mirror is not among the states of the body, all three have the row before it.
 fn line_of_line_rows(parts: &LoopParts<'_>, order: usize) -> Vec<(Signal, OutputRow)> {
     let scenario = parts.scenario;
     let Some(body) = scenario.model.three_axis() else { return Vec::new() };
@@ -60,6 +69,7 @@ fn line_of_line_rows(parts: &LoopParts<'_>, order: usize) -> Vec<(Signal, Output
     for (index, line) in scenario.line_of_sight.iter().enumerate() {
         let sensitivity = line.sensitivity(body);
         let states = parts.mirrors.iter().find(|own| own.line == index);
+        let mut across = [false; 3];
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let about = Vector::ith(axis, 1.0);
             let row = line_row(&sensitivity, &about, order);
@@ -67,6 +77,7 @@ fn line_of_line_rows(parts: &LoopParts<'_>, order: usize) -> Vec<(Signal, Output
             if row.amax() <= 1e-12 {
                 continue;
             }
+            across[axis] = true;
             let mut add = |name: String, row: RowDVector<f64>| {
                 all.push((Signal { name, unit: "rad".to_owned() }, OutputRow::Body(row)));
             };
@@ -80,6 +91,20 @@ fn line_of_line_rows(parts: &LoopParts<'_>, order: usize) -> Vec<(Signal, Output
                 add(format!("line_of_sight{index}_{name}"), row);
             }
         }
+        for (_, name) in DIAGONALS.iter().filter(|(pair, _)| pair.iter().all(|axis| across[*axis])) {
+            let about = diagonal(name);
+            let row = line_row(&sensitivity, &about, order);
+            let angle = states.map(|states| states.angle_row(&about, order));
+            let row = angle.map_or_else(|| row.clone(), |angle| &row - angle);
+            let signal = Signal { name: format!("line_of_sight{index}_{name}"), unit: "rad".to_owned() };
+            all.push((signal, OutputRow::Body(row)));
+        }
     }
     all
+}
+
+/// Returns the axis between two axes of the body, by its name.
+pub fn diagonal(name: &str) -> Vector {
+    let part = |axis: &str| if name.contains(axis) { std::f64::consts::FRAC_1_SQRT_2 } else { 0.0 };
+    Vector::new(part("x"), part("y"), part("z"))
 }

@@ -10,11 +10,13 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::density::cumulative_rms;
+use super::energy_circle::EnergyCircle;
 use super::image_contrast::{ImageBlur, ImageFactors};
 use super::imbalance::{WheelImbalance, WheelSpectrum};
 use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, NoisyLoop};
 use super::output::output_index;
+use super::required_contrast::RequiredContrast;
 use super::source_motion::SourceMotion;
 use super::spectral_line::SpectralLine;
 use super::vibration::Vibration;
@@ -85,6 +87,12 @@ pub struct NoiseReport {
     /// Further factors of the contrast, if a pixel is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub image: Option<ImageFactors>,
+    /// Circles of the energy of an image by noise and broadband loads, for each line of sight, if a pixel is given: over the exposures.
+    #[schemars(extend("x-key" = "line"))]
+    pub circles: Vec<EnergyCircle>,
+    /// Contrasts of images that requirements ask for.
+    #[schemars(extend("x-key" = "name"))]
+    pub contrasts: Vec<RequiredContrast>,
     /// Lines of the imbalance of the wheels, if they have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Json>", extend("x-type" = "WheelSpectrum | None"))]
@@ -176,10 +184,13 @@ impl NoiseReport {
             report.add_vibration(&noisy, &outputs, &vibration);
         }
         report.mirrors = MirrorSensitivity::all(scenario);
+        report.contrasts = RequiredContrast::all(scenario)?;
         if let Some(pixel) = request.pixel {
             report.add_contrast(&noisy, (&outputs, &vibration), pixel).map_err(NoiseError::Request)?;
             let smear = request.smear.zip(request.window).map(|(rate, window)| rate * window.length);
             report.image = Some(ImageFactors::new(pixel, request.diffraction, smear));
+            let exposure = request.window.map(|window| window.length);
+            report.circles = EnergyCircle::all(&noisy, &lines, exposure)?;
         }
         Ok(report)
     }
@@ -202,11 +213,7 @@ impl NoiseReport {
         let mut over_speed = Vec::new();
         for (place, own) in self.outputs.iter_mut().enumerate().filter(|(_, own)| own.unit == "rad") {
             let exposure = own.window.map(|window| window.window_s);
-            let [bands, tones] = [true, false].map(|is_gaussian| {
-                vibration.lines(outputs[place], is_gaussian).copied().collect::<Vec<SpectralLine>>()
-            });
-            let fastest = tones.iter().map(|line| line.frequency_rad_s).fold(fastest, f64::max);
-            let blur = ImageBlur::new(noisy, outputs[place], (exposure, fastest), &bands)?.with_lines(tones);
+            let blur = ImageBlur::new(noisy, vibration, outputs[place], (exposure, fastest))?;
             own.mtf = Some(blur.contrast(nyquist, &[]));
             over_speed.push((place, blur));
         }
@@ -312,6 +319,8 @@ impl NoiseReport {
             frequency_hz,
             outputs: found,
             image: None,
+            circles: Vec::new(),
+            contrasts: Vec::new(),
             wheels: None,
             mirrors: Vec::new(),
         })
@@ -361,11 +370,5 @@ fn wheel_spectrum(
         Some(speeds) => Some(imbalance.spectrum(&lines, &speeds, outputs)?),
         None => imbalance.refined_spectrum(&lines, outputs)?,
     };
-    found.map(Some).ok_or_else(without_speed)
-}
-
-/// Returns the fault of wheels without a largest speed.
-pub(super) fn without_speed() -> NoiseError {
-    let why = "speeds must be given: the scenario gives no largest speed of its wheels";
-    NoiseError::Request(why.to_owned())
+    found.map(Some).ok_or_else(NoiseError::without_speed)
 }

@@ -8,10 +8,11 @@ use std::f64::consts::TAU;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::scalar_search::maximum;
 use flexsc_spacecraft::load_lines::LoadLines;
-use nalgebra::{Complex, DVector};
+use nalgebra::Complex;
 use rayon::prelude::*;
 
 use super::lines::LineLoop;
+use super::measured_loads::VibrationLoad;
 use super::source_motion::{Measure, SourceMotion, WorstTone};
 use super::spectral_line::SpectralLine;
 use super::transfer::LoopTransfer;
@@ -32,8 +33,8 @@ const MOST_WHOLE: f64 = 1000.0;
 /// Machine with lines.
 pub(super) struct ToneSource<'a> {
     pub lines: &'a LoadLines,
-    /// Load of each harmonic at its amplitude, as a column of the rates of the body's states.
-    pub loads: Vec<DVector<f64>>,
+    /// Load of each harmonic at its amplitude.
+    pub loads: Vec<VibrationLoad>,
 }
 
 /// Machine in a loop.

@@ -6,8 +6,10 @@ use flexsc_formats::document::ConfigError;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::lines::LineLoop;
+use super::measured_loads::{MeasuredPart, VibrationLoad};
 use super::spectral_line::SineLoad;
 use crate::eigenvalues::eigenvalues;
+use crate::linear_model::Signal;
 use crate::margins::frequency_response::{FrequencyResponse, modulus};
 use crate::open_loop::{OpenLoop, TransferMatrices};
 
@@ -29,8 +31,10 @@ pub struct LoopTransfer<'a> {
     /// Outputs, as indices.
     outputs: &'a [usize],
     loads: Vec<SineLoad>,
-    /// Response of the measured angles and rates of the body alone to the loads.
-    measured: FrequencyResponse,
+    /// Response of the angles and rates of the body alone that sensors measure to the loads.
+    sensed: FrequencyResponse,
+    /// Components of loads that go by measured paths.
+    measured: MeasuredLoads,
     /// Resonances: frequency and half width (rad/s), of the body and then of the loop.
     pub resonances: Vec<[f64; 2]>,
     of_body: usize,
@@ -51,14 +55,14 @@ pub struct LoadResponse {
 }
 
 impl<'a> LoopTransfer<'a> {
-    /// Creates the responses of some outputs to loads, each a column of the rates of the body's states.
+    /// Creates the responses of some outputs to loads.
     ///
     /// # Errors
     /// See [`LineLoop::lines`].
     pub fn new(
         lines: &'a LineLoop<'a>,
         outputs: &'a [usize],
-        loads: &[DVector<f64>],
+        loads: &[VibrationLoad],
     ) -> Result<Self, ConfigError> {
         let opened = OpenLoop::from_parts(&lines.parts)?;
         let closed = opened.transfer.sensitivity().and_then(|closed| eigenvalues(&closed.a));
@@ -77,19 +81,21 @@ impl<'a> LoopTransfer<'a> {
             .map(|pole| [pole.im.abs(), pole.re.abs()]);
         let of_body: Vec<[f64; 2]> = of_body.filter(is_above).filter(is_damped).collect();
         let body = &lines.parts.body;
-        let entry = |row: usize, load: usize| loads[load].get(row).copied().unwrap_or(0.0);
-        let measured = FrequencyResponse::new(&TransferMatrices {
+        let columns: Vec<DVector<f64>> = loads.iter().map(VibrationLoad::column).collect();
+        let entry = |row: usize, load: usize| columns[load].get(row).copied().unwrap_or(0.0);
+        let sensed = FrequencyResponse::new(&TransferMatrices {
             a: body.a.clone(),
             b: DMatrix::from_fn(body.a.nrows(), loads.len(), entry),
             c: body.c.clone(),
             d: DMatrix::zeros(body.c.nrows(), loads.len()),
         });
-        let load = |cosine: &DVector<f64>| SineLoad { cosine: cosine.clone(), sine: cosine * 0.0 };
+        let load = |cosine: DVector<f64>| SineLoad { sine: &cosine * 0.0, cosine };
         Ok(Self {
             lines,
             outputs,
-            loads: loads.iter().map(load).collect(),
-            measured,
+            sensed,
+            measured: MeasuredLoads::new(lines, outputs, loads)?,
+            loads: columns.into_iter().map(load).collect(),
             of_body: of_body.len(),
             resonances: of_body.into_iter().chain(of_loop.filter(is_above)).collect(),
             turn,
@@ -114,14 +120,15 @@ impl<'a> LoopTransfer<'a> {
             })
         });
         let is_below = |at: f64| at > 0.0 && at <= highest;
-        let direct = self.resonances.iter().copied().filter(|[at, _]| is_below(*at)).collect();
+        let direct = self.resonances.iter().copied().chain(self.measured.resonances());
+        let direct = direct.filter(|[at, _]| is_below(*at)).collect();
         (direct, aliases.filter(|([at, _], _)| is_below(*at)).collect())
     }
 
     /// Returns the squared magnitudes of the measured angles and rates of the body without its law under each load, one in a column, at a
     /// frequency (rad/s); `None` at a pole.
-    pub fn measured_squares(&self, frequency: f64) -> Option<DMatrix<f64>> {
-        Some(self.measured.scan(Complex::new(0.0, frequency))?.map(|entry| entry.norm_sqr()))
+    pub fn sensed_squares(&self, frequency: f64) -> Option<DMatrix<f64>> {
+        Some(self.sensed.scan(Complex::new(0.0, frequency))?.map(|entry| entry.norm_sqr()))
     }
 
     /// Returns the response to each load at a frequency (rad/s).
@@ -141,7 +148,9 @@ impl<'a> LoopTransfer<'a> {
                 sampled: squares.column(load).iter().copied().collect(),
             }
         };
-        Ok((0..self.loads.len()).map(of_load).collect())
+        let mut found: Vec<LoadResponse> = (0..self.loads.len()).map(of_load).collect();
+        self.measured.replace(self.lines, frequency, &mut found)?;
+        Ok(found)
     }
 
     /// Returns the lines of an output behind its mirror, if it is behind one, for those before it under each of some loads of one
@@ -161,5 +170,75 @@ impl<'a> LoopTransfer<'a> {
     /// Returns true if an output is behind a mirror.
     pub fn has_mirror(&self, output: usize) -> bool {
         self.lines.mirror(self.outputs[output]).is_some()
+    }
+}
+
+/// Components of loads that go by measured paths.
+struct MeasuredLoads {
+    parts: Vec<MeasuredPart>,
+    /// Loads of one component each, and outputs, whose model is replaced.
+    alone: Vec<SineLoad>,
+    replaced: Vec<usize>,
+    /// Of each component, its load and output among these.
+    places: Vec<(usize, usize)>,
+}
+
+impl MeasuredLoads {
+    fn new(lines: &LineLoop<'_>, outputs: &[usize], loads: &[VibrationLoad]) -> Result<Self, ConfigError> {
+        let signals: Vec<&Signal> = outputs.iter().map(|output| &lines.signals[*output]).collect();
+        let parts = MeasuredPart::all(lines.parts.scenario, &signals, loads);
+        let (mut components, mut replaced, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        let place = |all: &mut Vec<(usize, usize)>, own: (usize, usize)| {
+            all.iter().position(|known| *known == own).unwrap_or_else(|| {
+                all.push(own);
+                all.len() - 1
+            })
+        };
+        for part in &parts {
+            let output = lines.output(&part.replaced.0).map_err(|why| ConfigError::new("line_of_sight", why))?;
+            let known = replaced.iter().position(|own| *own == output).unwrap_or_else(|| {
+                replaced.push(output);
+                replaced.len() - 1
+            });
+            places.push((place(&mut components, part.load), known));
+        }
+        let load = |(load, part): (usize, usize)| {
+            let cosine = loads[load].parts[part].column.clone();
+            SineLoad { sine: &cosine * 0.0, cosine }
+        };
+        Ok(Self { parts, alone: components.into_iter().map(load).collect(), replaced, places })
+    }
+
+    /// Returns the ends and the peaks of the paths.
+    fn resonances(&self) -> impl Iterator<Item = Resonance> {
+        self.parts.iter().flat_map(MeasuredPart::resonances)
+    }
+
+    /// Puts the measured paths in the place of the model at a frequency (rad/s) that they have.
+    fn replace(
+        &self,
+        lines: &LineLoop<'_>,
+        frequency: f64,
+        responses: &mut [LoadResponse],
+    ) -> Result<(), ConfigError> {
+        if self.parts.iter().all(|part| part.at(frequency).is_none()) {
+            return Ok(());
+        }
+        let model = lines.solved(frequency, &self.alone, &self.replaced)?;
+        for (part, (alone, output)) in self.parts.iter().zip(&self.places) {
+            let (Some(measured), (_, share)) = (part.at(frequency), &part.replaced) else { continue };
+            let response = &mut responses[part.load.0];
+            let own = &mut response.lines[part.output];
+            for ((_, amplitude), modelled) in own.iter_mut().zip(&model.amplitudes) {
+                *amplitude -= modelled[(*output, *alone)] * *share;
+            }
+            if let Some((_, direct)) = own.last_mut() {
+                *direct += measured * *share;
+            }
+            // At the samples of the law all lines have one frequency.
+            let sum: Complex<f64> = own.iter().map(|(_, amplitude)| amplitude).sum();
+            response.sampled[part.output] = sum.norm_sqr();
+        }
+        Ok(())
     }
 }

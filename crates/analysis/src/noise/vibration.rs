@@ -11,6 +11,7 @@ use nalgebra::{DVector, Matrix3};
 
 use super::broadband::{BroadbandSource, broadband};
 use super::lines::LineLoop;
+use super::measured_loads::VibrationLoad;
 use super::source_motion::{Measure, SourceMotion};
 use super::spectral_line::SpectralLine;
 use super::tones::{ToneSource, worst_tones};
@@ -68,12 +69,30 @@ impl Vibration {
         Ok(found)
     }
 
-    /// Returns the lines of an output: those of its broadband sources, which are Gaussian, or those of machines with lines.
-    pub fn lines(&self, output: usize, is_gaussian: bool) -> impl Iterator<Item = &SpectralLine> + Clone {
+    /// Computes the motion of some outputs of a loop under its broadband sources alone.
+    ///
+    /// # Errors
+    /// See [`LineLoop::lines`].
+    pub fn gaussian(lines: &LineLoop<'_>, outputs: &[usize]) -> Result<Self, ConfigError> {
+        let Machines { mut keys, broadband: bands, loads, .. } = Machines::new(lines.parts.scenario);
+        keys.truncate(bands.len());
+        let (frequency_hz, motions) = broadband(lines, outputs, &loads, bands)?;
+        Ok(Self { sources: keys, frequency_hz, outputs: outputs.iter().copied().zip(motions).collect() })
+    }
+
+    /// Returns the motion of an output under each of its broadband sources, which are Gaussian, or under each machine with lines.
+    pub fn sources_of(
+        &self,
+        output: usize,
+        is_gaussian: bool,
+    ) -> impl Iterator<Item = &SourceMotion> + Clone {
         let own = self.outputs.get(&output).map_or(&[][..], |sources| sources);
-        own.iter()
-            .filter(move |source| source.density.is_some() == is_gaussian)
-            .flat_map(|source| &source.lines)
+        own.iter().filter(move |source| source.density.is_some() == is_gaussian)
+    }
+
+    /// Returns the lines of an output: those of its broadband sources, or those of machines with lines.
+    pub fn lines(&self, output: usize, is_gaussian: bool) -> impl Iterator<Item = &SpectralLine> + Clone {
+        self.sources_of(output, is_gaussian).flat_map(|source| &source.lines)
     }
 }
 
@@ -89,8 +108,8 @@ struct Machines<'a> {
     keys: Vec<String>,
     broadband: Vec<BroadbandSource<'a>>,
     tones: Vec<ToneSource<'a>>,
-    /// Broadband loads, as columns of the rates of the body's states.
-    loads: Vec<DVector<f64>>,
+    /// Broadband loads, each a unit of one component.
+    loads: Vec<VibrationLoad>,
 }
 
 impl<'a> Machines<'a> {
@@ -100,25 +119,23 @@ impl<'a> Machines<'a> {
         let all = scenario.model.three_axis().map_or(&[][..], |_| &scenario.disturbance[..]);
         for (index, disturbance) in all.iter().enumerate() {
             let Some(body) = scenario.model.three_axis() else { continue };
-            let column = |part| {
-                let unit = disturbance.unit_effect(body, part);
-                load_column(body, &unit.torque, |mode| unit.forces.get(mode).copied().unwrap_or(0.0))
+            let load = |amplitudes: [f64; 6]| {
+                let column = |part| {
+                    let unit = disturbance.unit_effect(body, part);
+                    load_column(body, &unit.torque, |mode| unit.forces.get(mode).copied().unwrap_or(0.0))
+                };
+                VibrationLoad::new(disturbance.place(body), amplitudes, column)
             };
             if let Some(density) = &disturbance.density {
-                let given = (0..6).filter(|part| density.has_part(*part));
-                let parts = given.map(|part| {
-                    loads.push(column(part));
-                    (part, loads.len() - 1)
+                let sums = density.loads().into_iter().map(|parts| {
+                    loads.push(load(std::array::from_fn(|own| if parts.contains(&own) { 1.0 } else { 0.0 })));
+                    loads.len() - 1
                 });
                 let key = format!("disturbance[{index}].density");
                 keys.push(key.clone());
-                broadband.push(BroadbandSource { key, density, parts: parts.collect() });
+                broadband.push(BroadbandSource { key, density, loads: sums.collect() });
             }
             if let Some(lines) = &disturbance.lines {
-                let load = |amplitudes: [f64; 6]| {
-                    let each = amplitudes.into_iter().enumerate().filter(|(_, amplitude)| *amplitude != 0.0);
-                    each.map(|(part, amplitude)| column(part) * amplitude).sum()
-                };
                 let loads = lines.harmonics.iter().map(|harmonic| load(harmonic.amplitudes())).collect();
                 tones.push(ToneSource { lines, loads });
                 tone_keys.push(format!("disturbance[{index}].lines"));

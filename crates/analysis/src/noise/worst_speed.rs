@@ -3,7 +3,6 @@
 use super::imbalance::WheelImbalance;
 use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, stable_loops};
-use super::report::without_speed;
 use super::window_rms::WindowRms;
 use super::windows::Window;
 use flexsc_formats::document::ConfigError;
@@ -39,7 +38,7 @@ impl WorstSpeed {
         let lines = LineLoop::from_scenario(scenario)?;
         stable_loops(&lines.parts)?;
         let place = lines.output(&output.name).map_err(NoiseError::Request)?;
-        let found = imbalance.largest_spectrum(&lines, &[place])?.ok_or_else(without_speed)?;
+        let found = imbalance.largest_spectrum(&lines, &[place])?.ok_or_else(NoiseError::without_speed)?;
         let values: Vec<f64> = match output.window {
             None => found.rms[0].clone(),
             Some(window) => {

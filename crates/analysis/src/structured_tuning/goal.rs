@@ -12,8 +12,8 @@ pub enum TuningObjective {
     Margin,
     /// Longest settling time of all plants, which is minimised.
     Settling,
-    /// Largest value of all plants of the requirement with this name, which is minimised: the rms of its pointing index, or the
-    /// value of one over time.
+    /// Largest value of all plants of the requirement with this name, which is minimised: the rms of its pointing index, the
+    /// value of one over time, or the loss 1 - MTF of the contrast of an image.
     Requirement(String),
 }
 

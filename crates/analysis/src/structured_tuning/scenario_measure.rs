@@ -1,11 +1,11 @@
-//! Measures of a scenario's loop that a tuning minimises or limits: settling times, pointing indices, and requirements over
-//! time, by a run.
+//! Measures of a scenario's loop that a tuning minimises or limits: settling times, pointing indices, contrasts of images, and
+//! requirements over time, by a run.
 
 use flexsc_formats::document::ConfigError;
 
 use super::goal::TunedMeasure;
 use crate::budget::{LEVELS, linear_noise, sigmas};
-use crate::noise::{LineLoop, NoiseError, NoisyLoop};
+use crate::noise::{LineLoop, NoiseError, NoisyLoop, RequiredContrast};
 use crate::open_loop::LoopParts;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Record, RecordError, RequirementRobustness, RobustnessOfRequirements, Sample};
@@ -21,6 +21,8 @@ pub enum ScenarioMeasure {
     Index(usize),
     /// Value of the requirement over time with this index, in a run.
     OverTime(usize),
+    /// Loss 1 - MTF of the requirement on the contrast of an image with this index.
+    Contrast(usize),
 }
 
 /// Robustness of the requirements over time of a run.
@@ -50,9 +52,14 @@ impl ScenarioMeasure {
     /// # Errors
     /// No requirement with the name, one on a metric, and one over time whose limit is not above 0.
     pub fn for_requirement(scenario: &Scenario, name: &str) -> Result<Self, ConfigError> {
+        let contrasts = &scenario.study.contrasts;
+        if let Some(index) = contrasts.iter().position(|own| own.name == name) {
+            return Ok(Self::Contrast(index));
+        }
         let all = &scenario.study.requirements;
         let Some(index) = all.iter().position(|own| own.name == name) else {
-            let known: Vec<String> = all.iter().map(|own| format!("`{}`", own.name)).collect();
+            let known = all.iter().map(|own| &own.name).chain(contrasts.iter().map(|own| &own.name));
+            let known: Vec<String> = known.map(|name| format!("`{name}`")).collect();
             let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
             let why = format!(
                 "has no requirement `{name}` (requirements: {known}); `margin` and `settling` need none"
@@ -84,6 +91,11 @@ impl ScenarioMeasure {
                 let own = &scenario.study.requirements[*index];
                 let own_limit = is_limited.then(|| own.limit / sigmas(own.level.min(LEVELS[2])));
                 TunedMeasure { name: own.name.clone(), unit: own.unit, limit: own_limit }
+            }
+            Self::Contrast(index) => {
+                let own = &scenario.study.contrasts[*index];
+                let limit = is_limited.then_some(1.0 - own.least);
+                TunedMeasure { name: own.name.clone(), unit: "", limit }
             }
             Self::OverTime(index) => {
                 let own = &scenario.study.requirements[*index];
@@ -127,6 +139,13 @@ impl ScenarioMeasure {
                     format!("{name}: the linear loop has no index of the requirement `{}`", own.name)
                 })?;
                 Ok(vec![rms])
+            }
+            Self::Contrast(index) => {
+                match RequiredContrast::from_parts(parts, &scenario.study.contrasts[*index]) {
+                    Ok(found) => Ok(vec![1.0 - found.mtf]),
+                    Err(NoiseError::Unstable(_) | NoiseError::Unsettled(_)) => Ok(vec![f64::INFINITY]),
+                    Err(fault) => Err(format!("{name}: {fault}")),
+                }
             }
             Self::OverTime(index) => {
                 let own = &scenario.study.requirements[*index];

@@ -12,6 +12,7 @@ use flexsc_core::analysis::budget::{
     CampaignBudget, DisturbedLoop, ErrorSources, IndexBudget, IndexRun, PointingBudget, linear_sources,
     noise_cycle, sine_frequencies,
 };
+use flexsc_core::analysis::noise::RequiredContrast;
 use flexsc_core::campaign::{Campaign, Design, RunOutcome};
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::ReaderUnits;
@@ -30,6 +31,8 @@ use crate::number_table::NumberTable;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, print_lines, with_scenario_name};
 use crate::row_table::{column, print_rows};
+use crate::spectrum::contrasts::{self, SpatialUnits};
+use crate::spectrum::refused;
 use crate::stop::{self, stop_flag};
 use crate::{requirements, say, scenario};
 
@@ -60,6 +63,8 @@ pub struct Budgets {
     runs: u64,
     indices: Vec<CampaignBudget>,
     verdicts: Vec<RequirementVerdict>,
+    /// Contrasts of images, which the linear loop has, and the units of their spatial frequencies.
+    contrasts: (Vec<RequiredContrast>, SpatialUnits),
     units: Units,
 }
 
@@ -77,7 +82,8 @@ pub fn run(args: &BudgetArgs) -> Result<(), CliError> {
     } else {
         budgets.print()?;
     }
-    requirements::validate([(budgets.name.as_str(), &budgets.verdicts[..])])
+    requirements::validate([(budgets.name.as_str(), &budgets.verdicts[..])])?;
+    contrasts::require_met(&budgets.name, &budgets.contrasts.0)
 }
 
 /// Computes the budgets of a scenario.
@@ -137,6 +143,12 @@ impl CampaignSetup {
             RequirementSource::Error(error) => error.index.values(error.samples),
         };
         let values: u64 = scenario.study.requirements.iter().map(|of| samples(&of.source)).sum();
+        let contrasts = RequiredContrast::all(&scenario).map_err(|fault| refused(&name, fault))?;
+        let contrasts = (contrasts, SpatialUnits::new(&scenario));
+        if values == 0 && !contrasts.0.is_empty() {
+            let (indices, verdicts) = (Vec::new(), Vec::new());
+            return Ok(Budgets { name, runs: 0, indices, verdicts, contrasts, units: self.units });
+        }
         if values == 0 {
             let why = "has no [[requirement]] on a pointing index with a value in the run";
             return Err(CliError::Arguments(format!("{name}: {why}")));
@@ -191,7 +203,8 @@ impl CampaignSetup {
         })?;
         let all = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
         let budgets = self.index_budgets(campaign.scenario(), all.into_values().collect());
-        Ok(Budgets { name, runs: self.runs, indices: budgets, verdicts: runs.finish(), units: self.units })
+        let verdicts = runs.finish();
+        Ok(Budgets { name, runs: self.runs, indices: budgets, verdicts, contrasts, units: self.units })
     }
 
     /// Returns the budget of each requirement on a pointing index, from the values of all requirements in each run.
@@ -235,7 +248,8 @@ impl Results for Budgets {
     }
 
     fn figures(&self) -> Vec<Named> {
-        self.indices.iter().map(|budget| figures::named(&self.name, budget)).collect()
+        let indices = self.indices.iter().map(|budget| figures::named(&self.name, budget));
+        indices.chain(contrasts::figures(&self.name, &self.contrasts.0, &self.contrasts.1)).collect()
     }
 
     fn table(&self) -> Option<NumberTable> {
@@ -249,7 +263,10 @@ impl Results for Budgets {
             self.print_budget(budget);
         }
         let verdicts = requirements::lines(&self.verdicts, self.units.into()).join("\n  ");
-        say!("\n  {}", style().styled(&verdicts));
+        if !verdicts.is_empty() {
+            say!("\n  {}", style().styled(&verdicts));
+        }
+        contrasts::print(&self.contrasts.0, &self.contrasts.1, self.units);
         Ok(())
     }
 }
@@ -260,6 +277,7 @@ impl Budgets {
         PointingBudget {
             runs: self.runs,
             budgets: self.indices.iter().map(IndexBudget::from).collect(),
+            contrasts: self.contrasts.0.clone(),
             requirements: self.verdicts.iter().map(RequirementVerdict::to_json).collect(),
         }
     }

@@ -1,7 +1,8 @@
 //! Block of the noise: a row for each mode of operation with a linear law, or for each output without modes.
 
-use flexsc_core::analysis::noise::OutputNoise;
-use flexsc_core::formats::reader_units::{ReaderUnits, number, percent};
+use flexsc_core::analysis::noise::{NoiseReport, OutputNoise, RequiredContrast};
+use flexsc_core::formats::reader_units::{ReaderUnits, four_digits, number, percent, time_span};
+use flexsc_core::requirement_verdict::Decision;
 
 use super::html::{HtmlCell, HtmlRow, HtmlTable, cell, command, head, number_head, picture};
 use super::mode_analysis::{Analysed, Refused, reasons, replaced};
@@ -80,11 +81,44 @@ pub fn html(
             html +=
                 &picture(&svg, &format!("Noise by frequency{mode}: density, and rms up to each frequency."));
         }
+        html += &contrast_table(report);
         html += &replaced(study, found);
         html += &reasons(refused, "the loop");
         html += &command(&study.command("spectrum", &own.options("")));
     }
     (html, sentence)
+}
+
+/// Returns the table of the contrasts of images that requirements ask for; empty without one.
+fn contrast_table(report: &NoiseReport) -> String {
+    if report.contrasts.is_empty() {
+        return String::new();
+    }
+    let row = |own: &RequiredContrast| {
+        let exposure = own.exposure_s.map_or_else(|| "a long exposure".to_owned(), time_span);
+        let at = format!("{} cycles/rad, {exposure}, {}", four_digits(own.spatial_frequency), own.output);
+        let costly = own.costs.first().map_or_else(HtmlCell::default, |cost| {
+            cell(&cost.source).small(&format!("without it {:.4}", cost.without))
+        });
+        let cells = vec![
+            cell(&own.name).small(&at),
+            cell(&format!("{:.4}", own.mtf)),
+            cell(&format!("at least {:.4}", own.least)),
+            cell(&format!("{:.4}", own.margin())),
+            HtmlCell::verdict(if own.met { Decision::Met } else { Decision::Missed }),
+            costly,
+        ];
+        HtmlRow { cells, is_missed: !own.met }
+    };
+    let heads = vec![
+        head("Contrast (MTF) of an image"),
+        number_head("Value"),
+        number_head("Limit"),
+        number_head("Margin"),
+        head("Verdict"),
+        head("Costs most"),
+    ];
+    HtmlTable { heads, rows: report.contrasts.iter().map(row).collect(), is_cards: true }.html()
 }
 
 /// Returns the sources of an output's noise with their shares of the variance, the largest first.

@@ -1,5 +1,6 @@
 //! `flexsc spectrum`: noise of the outputs of a loop, exact from its linear model, and lines of its wheels.
 
+pub(crate) mod contrasts;
 mod figures;
 mod mirrors;
 mod named_mode;
@@ -13,7 +14,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use flexsc_core::analysis::noise::{
-    MachineLines, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window, WindowRms,
+    EnergyCircle, MachineLines, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window, WindowRms,
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::time_span;
@@ -31,6 +32,7 @@ use crate::result_files::ResultOutput;
 use crate::results::{Results, show, with_scenario_name};
 use crate::row_table::{Column, column, print_rows, print_table};
 use crate::{say, scenario};
+use contrasts::SpatialUnits;
 use named_mode::ShownModes;
 use required_index::RequiredIndex;
 use waterfall::OutputWaterfall;
@@ -92,18 +94,25 @@ pub struct SpectrumResults {
     /// Angle of a pixel (rad), if one is given.
     pixel: Option<f64>,
     modes: ShownModes,
+    /// Units of the spatial frequencies of requirements.
+    spatial: SpatialUnits,
+}
+
+/// Returns the error of a scenario, by its name, without noise.
+pub fn refused(name: &str, fault: NoiseError) -> CliError {
+    match fault {
+        NoiseError::Key(fault) => {
+            ScenarioError::Key { origin: name.to_owned(), key: fault.key, why: fault.why }.into()
+        }
+        NoiseError::Request(why) => CliError::Arguments(format!("--{why}")),
+        fault => CliError::Arguments(format!("{name}: {fault}")),
+    }
 }
 
 /// Computes the noise of a scenario's loop.
 pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResults, CliError> {
     let name = scenario.name.clone();
-    let refused = |fault: NoiseError| match fault {
-        NoiseError::Key(fault) => {
-            ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why }.into()
-        }
-        NoiseError::Request(why) => CliError::Arguments(format!("--{why}")),
-        fault => CliError::Arguments(format!("{name}: {fault}")),
-    };
+    let refused = |fault: NoiseError| refused(&name, fault);
     let mut request = NoiseRequest {
         signals: args.signal.clone(),
         window: args.window.map(|length| Window { length, separation: args.separation }),
@@ -136,6 +145,7 @@ pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResul
     Ok(SpectrumResults {
         required: required.collect(),
         modes: ShownModes::new(scenario, fastest),
+        spatial: SpatialUnits::new(scenario),
         window_s: args.window,
         pixel: args.pixel,
         over_speed: args.speeds.is_some(),
@@ -153,7 +163,8 @@ pub fn run(args: &SpectrumArgs) -> Result<(), CliError> {
     if let Some(target) = target {
         target.save(&results)?;
     }
-    show(&results, None, args.scenario.json)
+    show(&results, None, args.scenario.json)?;
+    contrasts::require_met(&results.name, &results.report.contrasts)
 }
 
 /// Columns of the indices of outputs over windows.
@@ -220,6 +231,16 @@ const MACHINES: [Column<'_>; 5] = [
     column("peak", "peak").unit_of_row(),
 ];
 
+/// Columns of the circles of the energy of an image.
+const CIRCLES: [Column<'_>; 6] = [
+    column("output", "output"),
+    column("radius_50_rad", "radius\nof 50 %"),
+    column("radius_80_rad", "80 %"),
+    column("radius_95_rad", "95 %"),
+    column("major_rms_rad", "rms along the\nlonger axis"),
+    column("minor_rms_rad", "shorter"),
+];
+
 /// Columns of the contrast of an image that moves with an output.
 const CONTRAST: [Column<'_>; 4] = [
     column("output", "output"),
@@ -263,6 +284,16 @@ impl SpectrumResults {
         let columns =
             if rows.iter().any(|row| row["least"].is_number()) { &CONTRAST[..] } else { &CONTRAST[..2] };
         print_rows(&rows, columns, self.units);
+        let circle = |own: &EnergyCircle| {
+            let mut row = json!(own);
+            row["output"] = json!(format!("line_of_sight{}", own.line));
+            row
+        };
+        let circles: Vec<Json> = self.report.circles.iter().map(circle).collect();
+        if !circles.is_empty() {
+            say!("  energy of the image within circles, by noise and broadband loads; lines are not in it");
+            print_rows(&circles, &CIRCLES, self.units);
+        }
         if let Some(image) = &self.report.image {
             let factors = [
                 ("detector", Some(image.detector)),
@@ -346,6 +377,7 @@ impl Results for SpectrumResults {
         let windows = (&self.required[..], self.window_s);
         all.extend(waterfall::figures(&self.name, &self.report, windows, &self.modes));
         all.extend(mirrors::figures(&self.name, &self.report.mirrors));
+        all.extend(contrasts::figures(&self.name, &self.report.contrasts, &self.spatial));
         all
     }
 
@@ -391,6 +423,7 @@ impl Results for SpectrumResults {
         mirrors::print(&self.report.mirrors, self.units);
         self.print_machines();
         self.print_contrast();
+        contrasts::print(&self.report.contrasts, &self.spatial, self.units);
         self.print_welch();
         if let Some(wheels) = &self.report.wheels {
             wheels::print(&self.report, wheels, self.units);

@@ -270,7 +270,13 @@ impl StructuredResults {
         for measure in &report.measures {
             let is_index = |own: &&AssessedRequirement| matches!(own.source, RequirementSource::Error(_));
             let mut indices = self.scenario.study.requirements.iter().filter(is_index);
-            let rms = if indices.any(|own| own.name == measure.name) { " rms" } else { "" };
+            let rms = if indices.any(|own| own.name == measure.name) {
+                " rms"
+            } else if self.scenario.study.contrasts.iter().any(|own| own.name == measure.name) {
+                " 1 - MTF"
+            } else {
+                ""
+            };
             let is_kept = measure.limit.is_none_or(|limit| measure.after <= limit * (1.0 + LEAST_SHORTFALL));
             rows.push(row(format!("{}{rms}", measure.name), json!(measure), is_kept, measure.worst_plant));
         }

@@ -1,6 +1,5 @@
 //! Figure of a worst case: the value at every point over the uncertain keys on which it depends most.
 
-use flexsc_core::scenario::AssessedRequirement;
 use flexsc_core::worst_case::WorstCase;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, name_and_unit};
 
@@ -13,13 +12,12 @@ const MOST_PANELS: usize = 4;
 const NARROW: f64 = 0.01;
 
 /// Returns the figure, with the limit of a requirement.
-pub fn figure(name: &str, case: &WorstCase, requirement: Option<&AssessedRequirement>) -> Figure {
+pub fn figure(name: &str, case: &WorstCase, required: Option<&RequiredLimit>) -> Figure {
     let count = case.ranges.keys.len();
     let mut keys: Vec<usize> = (0..count).collect();
     keys.sort_by(|a, b| influence(case, *b).total_cmp(&influence(case, *a)));
-    let required = requirement.map(RequiredLimit::new);
     let mut panels: Vec<Panel> =
-        keys.into_iter().take(MOST_PANELS).map(|key| panel(case, key, required.as_ref())).collect();
+        keys.into_iter().take(MOST_PANELS).map(|key| panel(case, key, required)).collect();
     if let Some(first) = panels.first_mut().filter(|_| count > MOST_PANELS) {
         first.remark = format!("the {MOST_PANELS} of {count} keys that matter most");
     }

@@ -1,4 +1,4 @@
-//! `flexsc worst`: the worst case of requirements, a metric or a stability margin over the uncertain keys.
+//! `flexsc worst`: the worst case of requirements, a metric, lines of wheels or a stability margin over the uncertain keys.
 
 mod campaign_starts;
 mod figures;
@@ -11,9 +11,9 @@ use flexsc_core::analysis::noise::{WheelOutput, Window};
 use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::campaign::{Campaign, Design};
 use flexsc_core::formats::count::counted;
-use flexsc_core::scenario::AssessedRequirement;
+use flexsc_core::scenario::ContrastRequirement;
 use flexsc_core::uncertain::UncertainKey;
-use flexsc_core::worst_case::{LineSearch, MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase};
+use flexsc_core::worst_case::{ContrastSearch, LineSearch, MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
@@ -25,6 +25,7 @@ use crate::error::CliError;
 use crate::human::{Units, digits};
 use crate::number_table::NumberTable;
 use crate::quantity::in_unit;
+use crate::required_limit::RequiredLimit;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, print_lines, with_scenario_name};
 use crate::row_table::{Column, column, print_rows};
@@ -83,7 +84,7 @@ const KEYS: [Column<'_>; 5] = [
 /// Worst cases of a scenario.
 pub struct WorstCases {
     name: String,
-    cases: Vec<(WorstCase, Option<AssessedRequirement>)>,
+    cases: Vec<(WorstCase, Option<RequiredLimit>)>,
     /// Guaranteed ranges of the claims of the scenario, if it has any.
     bounds: Option<OutputBounds>,
     units: Units,
@@ -95,7 +96,7 @@ pub fn run(args: &WorstArgs) -> Result<(), CliError> {
     let target = if witness.is_some() { None } else { args.output.target(&inputs)? };
     let scenario = scenario::load(&args.scenario.scenario, &args.scenario.set, args.runs.seed)?;
     let scenario = args.scenario.in_mode(scenario)?;
-    if witness.is_some() && args.quantities(&scenario)?.len() > 1 {
+    if witness.is_some() && args.quantities(&scenario)?.len() + args.asked(&scenario).count() > 1 {
         let why = "-o: a witness is of one quantity; give --requirement, --metric or --margin";
         return Err(CliError::Arguments(why.to_owned()));
     }
@@ -134,11 +135,11 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
         let cases = vec![(case.map_err(|error| CliError::worst_case(&name, error))?, None)];
         return Ok(WorstCases { name, cases, bounds: None, units: args.output.choice.units() });
     }
-    let quantities = args.quantities(scenario)?;
+    let (quantities, mut cases) = (args.quantities(scenario)?, args.contrasts(scenario)?);
     if quantities.is_empty() {
         return Ok(WorstCases {
             name,
-            cases: Vec::new(),
+            cases,
             bounds: args.claims(scenario)?,
             units: args.output.choice.units(),
         });
@@ -149,12 +150,11 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
     let runs = u64::from(args.points) * quantities.len() as u64;
     let cost = campaign.cost(runs, None).map_err(|why| CliError::Arguments(format!("--points: {why}")))?;
     args.consent.check(&cost)?;
-    let mut cases = Vec::with_capacity(quantities.len());
     for quantity in quantities {
         let requirement = match &quantity {
             RunQuantity::Requirement(wanted) => {
                 let all = scenario.study.requirements.iter();
-                all.clone().find(|requirement| requirement.name == *wanted).cloned()
+                all.clone().find(|requirement| requirement.name == *wanted).map(RequiredLimit::new)
             }
             RunQuantity::Metric(_) => None,
         };
@@ -187,14 +187,16 @@ impl WorstArgs {
         if let Some(name) = &self.metric {
             return Ok(vec![RunQuantity::Metric(name.clone())]);
         }
+        let contrasts = &scenario.study.contrasts;
         if let Some(name) = &self.requirement {
-            return Ok(vec![RunQuantity::Requirement(name.clone())]);
+            let is_of_run = contrasts.iter().all(|own| own.name != *name);
+            return Ok(is_of_run.then(|| RunQuantity::Requirement(name.clone())).into_iter().collect());
         }
         if self.margin.is_some() || self.signal.is_some() {
             return Ok(Vec::new());
         }
         let all = &scenario.study.requirements;
-        if all.is_empty() && scenario.written.bound.is_empty() {
+        if all.is_empty() && contrasts.is_empty() && scenario.written.bound.is_empty() {
             return Err(CliError::Arguments(format!(
                 "{}: has no [[requirement]] and no [[bound]]\n\nhint: `--metric NAME` or `--margin MARGIN` gives the quantity; \
                  `flexsc schema --metrics` lists the metrics",
@@ -206,6 +208,25 @@ impl WorstArgs {
 }
 
 impl WorstArgs {
+    /// Returns the requirements on the contrast of an image whose worst case is asked for.
+    fn asked<'a>(&'a self, scenario: &'a Scenario) -> impl Iterator<Item = &'a ContrastRequirement> {
+        let is_of_run = self.metric.is_some() || self.margin.is_some() || self.signal.is_some();
+        let all = if is_of_run { &[][..] } else { &scenario.study.contrasts[..] };
+        all.iter().filter(|own| self.requirement.as_ref().is_none_or(|name| *name == own.name))
+    }
+
+    /// Returns the worst cases of the contrasts of images that are asked for.
+    fn contrasts(&self, scenario: &Scenario) -> Result<Vec<(WorstCase, Option<RequiredLimit>)>, CliError> {
+        self.asked(scenario)
+            .map(|own| {
+                let search = ContrastSearch { requirement: own.clone(), most_loops: self.points as usize };
+                let found = search.run(scenario, stop_requested);
+                let case = found.map_err(|error| CliError::worst_case(&scenario.name, error))?;
+                Ok((case, Some(RequiredLimit::of_contrast(own))))
+            })
+            .collect()
+    }
+
     /// Returns the guaranteed ranges of the claims of a scenario, which stand beside its requirements.
     fn claims(&self, scenario: &Scenario) -> Result<Option<OutputBounds>, CliError> {
         let stands =
@@ -228,8 +249,8 @@ impl WorstCases {
         for (case, requirement) in &self.cases {
             let Some(requirement) = requirement else { continue };
             all += 1;
-            if !is_met(case, requirement) {
-                missed.push(requirement.name.as_str());
+            if !requirement.is_met(case.value()) {
+                missed.push(case.quantity.as_str());
             }
         }
         if missed.is_empty() {
@@ -243,7 +264,7 @@ impl WorstCases {
         )))
     }
 
-    fn print_case(&self, case: &WorstCase, requirement: Option<&AssessedRequirement>) {
+    fn print_case(&self, case: &WorstCase, requirement: Option<&RequiredLimit>) {
         let values = [case.nominal(), case.value()];
         let limit = requirement.map(|requirement| requirement.limit);
         let finite: Vec<f64> =
@@ -257,8 +278,8 @@ impl WorstCases {
             }
         };
         let judged = requirement.map_or_else(String::new, |requirement| {
-            let word = if is_met(case, requirement) { "met" } else { "missed" };
-            format!(", at most {}: {word}", text(requirement.limit))
+            let word = if requirement.is_met(case.value()) { "met" } else { "missed" };
+            format!(", {} {}: {word}", requirement.bound(), text(requirement.limit))
         });
         let unstable = if case.is_unstable { ", where the loop is not stable" } else { "" };
         say!(
@@ -284,18 +305,13 @@ impl WorstCases {
     }
 }
 
-/// Returns true if a requirement is met at the worst point.
-fn is_met(case: &WorstCase, requirement: &AssessedRequirement) -> bool {
-    case.value() <= requirement.limit
-}
-
 impl Results for WorstCases {
     fn json(&self) -> Vec<Json> {
-        let case = |(case, requirement): &(WorstCase, Option<AssessedRequirement>)| {
+        let case = |(case, requirement): &(WorstCase, Option<RequiredLimit>)| {
             let mut object = json!(case.report());
             if let Some(requirement) = requirement {
                 object["limit"] = json!(requirement.limit);
-                object["met"] = json!(is_met(case, requirement));
+                object["met"] = json!(requirement.is_met(case.value()));
             }
             object
         };

@@ -89,6 +89,9 @@ impl RunData<'_> {
                 lines.main("mirror", format!("{}: turns at most {angle}{limits}", line.point));
             }
         }
+        for own in &self.scenario.study.contrasts {
+            lines.main("contrast", format!("{}: not of a run; `flexsc spectrum` judges it", own.name));
+        }
     }
 
     /// Adds the pointing error: while the target moves, afterwards, and at the end.

@@ -6,6 +6,7 @@
 //! the noise of one run, so that points differ by their keys alone.
 
 mod box_search;
+mod contrast_search;
 mod line_search;
 mod loop_search;
 mod margin_search;
@@ -22,6 +23,7 @@ use serde_json::{Map, Value as Json, json};
 pub use box_search::{Assessed, SearchPoint};
 use flexsc_scenario::Scenario;
 use flexsc_scenario::uncertain::{UncertainBox, UncertainKey};
+pub use contrast_search::ContrastSearch;
 pub use line_search::LineSearch;
 pub use margin_search::{MarginKind, MarginSearch};
 pub use metric_search::{MetricSearch, RunQuantity};

@@ -41,6 +41,8 @@ const SYMBOLS: &[(&str, f64, [i16; 5], bool)] = &[
     ("J", 1.0, [2, 1, -2, 0, 0], true),
     ("T", 1.0, [0, 1, -2, -1, 0], true),
     ("Hz", 1.0, [0, 0, -1, 0, 0], true),
+    ("cycles", 1.0, [0, 0, 0, 0, 0], false),
+    ("cycle", 1.0, [0, 0, 0, 0, 0], false),
 ];
 
 const PREFIXES: &[(&str, f64)] = &[
@@ -93,8 +95,8 @@ const ARC_SIGNS: [(&str, &str); 6] = [
 ];
 
 /// Accepted parts of a unit, for error messages.
-pub const KNOWN: &str = "m, g, s, A, rad, N, Nm, Nms, J, T and Hz with prefixes from n to G, min, h, d, deg, arcmin, arcsec, mas and \
-                         rpm, joined as in `N m s/rad` or `deg/sqrt(h)`";
+pub const KNOWN: &str = "m, g, s, A, rad, N, Nm, Nms, J, T and Hz with prefixes from n to G, min, h, d, deg, arcmin, arcsec, mas, \
+                         rpm and cycles, joined as in `N m s/rad` or `deg/sqrt(h)`";
 
 /// The unit that was probably meant by a text that is none.
 pub fn meant(text: &str) -> Option<String> {
@@ -208,7 +210,7 @@ impl Unit {
         }
         let dimension = |(symbol, factor, exponents, _): &(&str, f64, [i16; 5], bool), prefix: f64| {
             let twice = exponents.map(|exponent| 2 * exponent);
-            Self { factor: prefix * factor, twice, cycles: *symbol == "Hz" }
+            Self { factor: prefix * factor, twice, cycles: ["Hz", "cycles", "cycle"].contains(symbol) }
         };
         if let Some(known) = SYMBOLS.iter().find(|known| known.0 == word) {
             return Some(dimension(known, 1.0));
@@ -333,6 +335,8 @@ mod tests {
         close(converted("rpm", "rad/s"), 0.104_719_755_119_659_77);
         close(converted("Hz", "rad/s"), TAU);
         close(converted("mHz", "1/s"), 1e-3);
+        close(converted("cycles/s", "rad/s"), TAU);
+        close(converted("cycles/arcsec", "cycles/rad"), 206_264.806_247_096_36);
         close(converted("deg/sqrt(h)", "rad/sqrt(s)"), 2.908_882_086_657_216e-4);
         close(converted("mN m", "N m"), 1e-3);
         close(converted("mNm", "N m"), 1e-3);

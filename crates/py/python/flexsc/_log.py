@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -123,6 +124,31 @@ class Log(Topics, Exportable, Drawable):
             ValueError: A time is not within the run, or the run cannot be repeated.
         """
         return self._run.sample(times)
+
+    def frames(self, rate: float, exposure: float | None = None) -> tuple[Topic, list[dict[str, Any]]]:
+        """Return the lines of sight as frames of a camera, and where lines of their spectrum land.
+
+        The topic `frames` has, for each frame, the mean error about x, y and z over its exposure and the rms
+        about it, for simulators of images. A line is a dictionary, the largest in the frames first: its source,
+        its frequency and where it lands (Hz), and its amplitudes in the run and in the frames (rad).
+
+        >>> craft = flexsc.Scenario.example("wheel-run-up").with_("duration", 2.0)
+        >>> with tempfile.TemporaryDirectory() as out:
+        ...     _ = craft.simulate(log="full").to_mcap(pathlib.Path(out) / "run.mcap")
+        ...     frames, lines = flexsc.read_log(pathlib.Path(out) / "run.mcap").frames(5.0, 0.02)
+        >>> list(frames)[:4], len(frames["time_s"])
+        (['frame', 'time_s', 'line', 'mean_x_rad'], 10)
+
+        Args:
+            rate: Frames per second (Hz).
+            exposure: Length of each exposure, at the start of its frame (s). Default: the whole frame.
+
+        Raises:
+            ValueError: The exposure is longer than a frame, or shorter than two samples.
+            LogError: The log has no samples of a line of sight.
+        """
+        columns, lines = self._native.frames(rate, exposure)
+        return Topic("frames", arrays(columns), self._known(), {}), json.loads(lines)
 
     def _export(self, options: engine.ExportOptions, path: str | os.PathLike[str]) -> int:
         return engine.export_log(self._native, options, path)

@@ -6,7 +6,7 @@ use flexsc_core::metrics::Selection;
 use flexsc_core::record::StopFlag;
 use flexsc_core::uncertain::UncertainKey;
 use flexsc_core::worst_case::{
-    LineSearch, MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCaseFault, WorstCaseReport,
+    ContrastSearch, LineSearch, MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCaseFault, WorstCaseReport,
 };
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
@@ -66,6 +66,11 @@ impl Worst {
         } else if kind == "signal" {
             let window = window.map(|length| Window { length, separation: None });
             let search = LineSearch { output: WheelOutput { name, window }, most_loops: points };
+            aside(on.py, move |stop| search.run(&inner, || stop.is_requested()))?
+        } else if let Some(own) =
+            inner.study.contrasts.iter().find(|own| kind == "requirement" && own.name == name).cloned()
+        {
+            let search = ContrastSearch { requirement: own, most_loops: points };
             aside(on.py, move |stop| search.run(&inner, || stop.is_requested()))?
         } else {
             let quantity =

@@ -234,9 +234,9 @@ impl CampaignRuns {
     pub fn requirements(&self) -> (Vec<String>, Vec<String>) {
         let Some((scenario, _)) = &self.scenario else { return Default::default() };
         let all = &scenario.study.requirements;
-        let of_reference = all.len() - scenario.requirement.len();
+        let is_written = |name: &str| scenario.requirement.iter().any(|own| own.name == name);
         let column = |(index, requirement): (usize, &AssessedRequirement)| {
-            let metric = required_metric(requirement).filter(|_| index < of_reference);
+            let metric = required_metric(requirement).filter(|_| !is_written(&requirement.name));
             metric.unwrap_or_else(|| value_of_requirement(index))
         };
         (all.iter().enumerate().map(column).collect(), all.iter().filter_map(required_metric).collect())

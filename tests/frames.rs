@@ -1,0 +1,69 @@
+//! Frames of a camera from a run, against means of the samples and the spectrum of the frames.
+
+use std::f64::consts::TAU;
+
+use crate::machines::{agree, bench};
+use crate::util::{Dir, table};
+
+/// Cooler at 51 Hz on the wheel unit.
+const COOLER: &str = r#"
+[[disturbance]]
+point = "rotor"
+[disturbance.lines]
+frequency = "51 Hz"
+harmonics = [{ order = 1, force = [1, 0, 2] }]
+"#;
+
+/// The amplitudes of the cooler's line are those of `tests/golden/image_requirements.py`; what the start leaves decays within seconds.
+#[test]
+fn frames_are_means_over_exposures_and_name_their_aliases() {
+    let dir = Dir::new();
+    dir.write("bench.toml", bench(0.001, COOLER).replace("period = 0.01\noptics", "period = 0.001\noptics"));
+    dir.run("simulate bench.toml --set duration=8 --log full").exits(0);
+    dir.run("export bench.mcap --topic line_of_sight -o samples.csv").exits(0);
+    let text = dir.run("export bench.mcap --frames \"20 Hz\" --exposure \"5 ms\" -o frames.csv").exits(0);
+    text.says(&["exposures of 5 ms", "disturbance[0].lines.harmonics[0]", "51", "9", "mode 1"]);
+    let number = |row: &std::collections::BTreeMap<String, String>, name: &str| -> f64 {
+        row[name].parse().expect("a number")
+    };
+    let samples = table(&dir, "samples.csv");
+    let frames = table(&dir, "frames.csv");
+    assert_eq!(frames.len(), 160);
+    for place in [0, 37, 159] {
+        let frame = &frames[place];
+        let start = number(frame, "time_s");
+        assert!((start - 0.05 * place as f64).abs() < 1e-9, "{start}");
+        let own: Vec<f64> = samples
+            .iter()
+            .filter(|row| (-1e-6..0.005 + 1e-6).contains(&(number(row, "time_s") - start)))
+            .map(|row| number(row, "axes[0].error_rad"))
+            .collect();
+        assert_eq!(own.len(), 6);
+        let mean = (own.iter().sum::<f64>() - 0.5 * (own[0] + own[5])) / 5.0;
+        assert!((number(frame, "mean_x_rad") - mean).abs() < 1e-9 * mean.abs() + 1e-18, "{place}");
+    }
+    // The line at 51 Hz is at 9 Hz, smaller by the mean over the exposure.
+    let late: Vec<_> = frames.iter().filter(|row| number(row, "time_s") >= 4.0 - 1e-9).collect();
+    let amplitude = |name: &str| {
+        let sums = late.iter().fold([0.0; 2], |[re, im], row| {
+            let (sine, cosine) = (TAU * 9.0 * number(row, "time_s")).sin_cos();
+            let value = number(row, name);
+            [re + value * cosine, im + value * sine]
+        });
+        2.0 / late.len() as f64 * sums[0].hypot(sums[1])
+    };
+    let turn = TAU / 2.0 * 51.0 * 0.005;
+    let factor = turn.sin() / turn;
+    agree("x", amplitude("mean_x_rad"), 2.056_313_80e-8 * factor, 0.02);
+    agree("y", amplitude("mean_y_rad"), 4.426_391_13e-8 * factor, 0.02);
+    // What cannot be is refused.
+    for (options, why) in [
+        ("--frames 0", "--frames must be a positive rate"),
+        ("--frames 20 --exposure 0.06", "--exposure must be positive and at most a frame"),
+        ("--frames 20 --exposure 0.001", "--exposure must have two samples of line_of_sight[0], 2 ms, got 1 ms"),
+        ("--frames 0.01", "--frames must be from 1 to 1000000 in the run, got 0"),
+    ] {
+        dir.run(&format!("export bench.mcap {options} -o wrong.csv")).exits(2).says(&[why]);
+        assert!(!dir.has("wrong.csv"));
+    }
+}
