@@ -123,7 +123,8 @@ fn source_bytes(args: &ExportFmuArgs, scenario: &Scenario, version: FmiVersion) 
     if args.part != Part::Controller {
         return Err(CliError::Arguments("--sources: is for `--part controller`".to_owned()));
     }
-    let (file, changes) = (export_c::file_name(path), export_c::stated_changes(&args.set, args.mode.as_deref()));
+    let (file, changes) =
+        (export_c::file_name(path), export_c::stated_changes(&args.set, args.mode.as_deref()));
     let origin = ExportOrigin { file: &file, changes: &changes };
     source_fmu_bytes(scenario, origin, &export_c::default_name(path), version).map_err(|error| match error {
         SourceFmuError::Export(error) => export_c::refused(path, error),

@@ -97,7 +97,8 @@ impl SourceModel {
             let mut own = Vec::new();
             for channel in &call.outputs {
                 own.push(output_name(call.name, channel).map(|name| {
-                    let unit = if name == "command" { command_unit(scenario) } else { channel.unit_of_numbers() };
+                    let unit =
+                        if name == "command" { command_unit(scenario) } else { channel.unit_of_numbers() };
                     let values = NamedValues { unit, ..NamedValues::of_channel(name, channel) };
                     add(&mut table, &NamedValues { start: Vec::new(), ..values }, Causality::Output)
                 }));
@@ -246,8 +247,7 @@ impl InputBinder<'_> {
         for own in &self.exported.parameters {
             let channel = Channel::real(&own.name, &own.about, 1, 1.0);
             let name = format!("parameter.{}", own.name);
-            let values =
-                NamedValues { start: vec![own.value], ..NamedValues::of_channel(name, &channel) };
+            let values = NamedValues { start: vec![own.value], ..NamedValues::of_channel(name, &channel) };
             add(&mut self.table, &values, Causality::Parameter);
         }
     }
