@@ -32,20 +32,6 @@ static bool is_before(sat_ticks a, sat_ticks b)
     return a.whole < b.whole || (a.whole == b.whole && a.part < b.part);
 }
 
-/* Reads the numbers of a field. */
-static void read_numbers(const char *name, double *numbers, int count)
-{
-    const int field = flexsc_find(&client, name);
-    for (int index = 0; index < count; index++) {
-        numbers[index] = flexsc_number(&client, field, index);
-    }
-}
-
-static bool is_new(const char *name)
-{
-    return flexsc_integer(&client, flexsc_find(&client, name), 0) == FLEXSC_NEW;
-}
-
 /* Begins, at the start of the run or after the computer has failed. */
 static void begin(sat_ticks now)
 {
@@ -55,7 +41,7 @@ static void begin(sat_ticks now)
     sat_init(&state, now);
     if (client.cycle > 0) {
         memset(&start, 0, sizeof start);
-        read_numbers("star_tracker.attitude", start.attitude, 4);
+        flexsc_read(&client, "star_tracker.attitude", start.attitude, 4);
     }
     sat_start(&state, now, &start, &started);
     if (client.cycle > 0) {
@@ -70,20 +56,20 @@ static void begin(sat_ticks now)
 /* Gives the filter and the B-dot law the readings that have come since the last cycle. */
 static void sample(sat_ticks now)
 {
-    sat_sample_input input = {.gyro_is_valid = is_new("gyro.status"),
-                              .magnetometer_is_valid = is_new("magnetometer.status"),
-                              .sun_sensor_is_valid = is_new("sun_sensor.status"),
-                              .star_tracker_is_valid = is_new("star_tracker.status")};
+    sat_sample_input input = {.gyro_is_valid = flexsc_is_new(&client, "gyro"),
+                              .magnetometer_is_valid = flexsc_is_new(&client, "magnetometer"),
+                              .sun_sensor_is_valid = flexsc_is_new(&client, "sun_sensor"),
+                              .star_tracker_is_valid = flexsc_is_new(&client, "star_tracker")};
     sat_sample_output output;
     if (input.star_tracker_is_valid) {
         last_tracker = now;
     }
-    read_numbers("gyro.rate", input.gyro_rate, 3);
-    read_numbers("magnetometer.field", input.magnetometer_vector, 3);
-    read_numbers("magnetometer.reference", input.magnetometer_reference, 3);
-    read_numbers("sun_sensor.direction", input.sun_sensor_vector, 3);
-    read_numbers("sun_sensor.reference", input.sun_sensor_reference, 3);
-    read_numbers("star_tracker.attitude", input.star_tracker_attitude, 4);
+    flexsc_read(&client, "gyro.rate", input.gyro_rate, 3);
+    flexsc_read(&client, "magnetometer.field", input.magnetometer_vector, 3);
+    flexsc_read(&client, "magnetometer.reference", input.magnetometer_reference, 3);
+    flexsc_read(&client, "sun_sensor.direction", input.sun_sensor_vector, 3);
+    flexsc_read(&client, "sun_sensor.reference", input.sun_sensor_reference, 3);
+    flexsc_read(&client, "star_tracker.attitude", input.star_tracker_attitude, 4);
     sat_sample(&state, now, &input, &output);
     if (input.magnetometer_is_valid) {
         sat_field_input field;
@@ -98,7 +84,7 @@ static void supervise(sat_ticks now)
 {
     sat_supervise_input input;
     sat_supervise_output output;
-    read_numbers("reference.attitude", input.target_attitude, 4);
+    flexsc_read(&client, "conditions.attitude", input.target_attitude, 4);
     input.silent_star_tracker = (double)(now.whole - last_tracker.whole) + (double)(now.part - last_tracker.part) * 1e-15;
     sat_supervise(&state, now, &input, &output);
     if (output.has_changed) {
@@ -115,11 +101,11 @@ static int step(sat_ticks now)
 {
     sat_step_input input;
     sat_step_output output;
-    read_numbers("reference.attitude", input.target_attitude, 4);
-    read_numbers("reference.angle", input.reference_angle, 3);
-    read_numbers("reference.rate", input.reference_rate, 3);
-    read_numbers("reference.acceleration", input.reference_acceleration, 3);
-    read_numbers("wheels.speed", input.wheel_speed, 3);
+    flexsc_read(&client, "reference.attitude", input.target_attitude, 4);
+    flexsc_read(&client, "reference.angle", input.reference_angle, 3);
+    flexsc_read(&client, "reference.rate", input.reference_rate, 3);
+    flexsc_read(&client, "reference.acceleration", input.reference_acceleration, 3);
+    flexsc_read(&client, "wheels.speed", input.wheel_speed, 3);
     sat_step(&state, now, &input, &output);
     next_step = now;
     if (output.mode == DETUMBLE) {

@@ -11,6 +11,7 @@ use super::fine_mirrors::FineMirrors;
 use super::guidance::Guidance;
 use super::loads::Loads;
 use super::mode_sky::ModeSky;
+use super::mode_test::ModeTest;
 use super::plant::Plant;
 use super::sensors::Sensors;
 
@@ -30,6 +31,8 @@ pub struct RunView<'a> {
     pub modes: Option<&'a ModeSequence>,
     /// Sunlight and elevations that conditions read.
     pub sky: &'a ModeSky,
+    /// Last test of the conditions before a decision from outside.
+    pub tested: Option<&'a ModeTest>,
 }
 
 /// Returns the true rate (rad/s) about the body's axes; of a body with one angle, with its elastic part.

@@ -189,7 +189,13 @@ impl InputBinder<'_> {
             "sample" => (Causality::Input, "sample."),
             _ => (Causality::Input, ""),
         };
-        let name = channel.quantity.map_or_else(|| format!("{prefix}{}", channel.name), FlightQuantity::path);
+        let name = match (call.name, channel.quantity) {
+            // At a change the target of the mode before is compared, and that of the next one is pursued.
+            ("supervise", Some(FlightQuantity::TargetAttitude)) => "conditions.attitude".to_owned(),
+            ("supervise", Some(FlightQuantity::ReferenceRate)) => "conditions.rate".to_owned(),
+            (_, Some(quantity)) => quantity.path(),
+            (_, None) => format!("{prefix}{}", channel.name),
+        };
         let mut values = NamedValues::of_channel(name, channel);
         match (call.name, channel.name.as_str()) {
             ("start", own) => values.start = self.run_start(call, own),
