@@ -16,10 +16,10 @@ mod fine_mirrors;
 mod guidance;
 mod loads;
 mod mode_sky;
+mod mode_test;
 mod motion_limits;
 mod mounted_lines;
 mod objective;
-mod mode_test;
 mod operation;
 mod own_disturbance;
 mod plant;
@@ -237,7 +237,8 @@ impl Simulation {
     #[inline]
     fn must_decide(&self, event: Event) -> bool {
         let now = self.clock.now();
-        self.laws.must_decide(now, event, &self.estimation.estimates) || self.operation.due() == Some(now)
+        self.laws.must_decide(now, event, &self.estimation.estimates)
+            || self.operation.due() == Some(now)
             || self.operation.is_tested(now)
     }
 
@@ -375,7 +376,8 @@ impl Simulation {
         } = self;
         let (now, modes, sky) = (clock.now(), operation.sequence(), &**operation.sky());
         let tested = operation.tested.as_ref();
-        let run = RunView { now, plant, sensors, estimation, guidance, laws, loads, mirrors, modes, sky, tested };
+        let run =
+            RunView { now, plant, sensors, estimation, guidance, laws, loads, mirrors, modes, sky, tested };
         (run, recorder)
     }
 

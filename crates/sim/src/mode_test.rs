@@ -36,8 +36,8 @@ impl Simulation {
         self.end_requirement_segment();
         self.estimation.update_angle_origin(now, &mut self.guidance);
         self.estimation.predict(now, &self.plant, &self.sensors);
-        let [attitude, rate] =
-            [FlightQuantity::TargetAttitude, FlightQuantity::ReferenceRate].map(|own| self.read_view().known(own));
+        let [attitude, rate] = [FlightQuantity::TargetAttitude, FlightQuantity::ReferenceRate]
+            .map(|own| self.read_view().known(own));
         self.operation.tested = Some(ModeTest { at: now, attitude, rate, readings: Vec::new() });
         self.update_mode(record)
     }

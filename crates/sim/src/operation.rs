@@ -12,9 +12,9 @@ use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Command, ModeEvent, ModeTargetStart, Record, Report, Sample};
 
-use super::mode_test::ModeTest;
 use super::blinding::BlindingState;
 use super::mode_sky::ModeSky;
+use super::mode_test::ModeTest;
 use super::run_view::{RunView, motion_error, true_rate};
 use super::{Simulation, SimulationError};
 use flexsc_scenario::Scenario;
