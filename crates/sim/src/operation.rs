@@ -14,7 +14,7 @@ use flexsc_record::{Command, ModeEvent, ModeTargetStart, Record, Report, Sample}
 
 use super::blinding::BlindingState;
 use super::mode_sky::ModeSky;
-use super::mode_test::ModeTest;
+use super::mode_test::TestedConditions;
 use super::run_view::{RunView, motion_error, true_rate};
 use super::{Simulation, SimulationError};
 use flexsc_scenario::Scenario;
@@ -28,7 +28,7 @@ pub struct Operation {
     /// Sky of the conditions.
     sky: Arc<ModeSky>,
     /// Last test before a decision from outside.
-    pub(super) tested: Option<ModeTest>,
+    pub(super) tested: Option<TestedConditions>,
 }
 
 impl Operation {

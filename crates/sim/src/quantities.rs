@@ -29,7 +29,7 @@ pub enum QuantityGroup {
     Reference,
     /// Wheels, as available to their drives.
     Wheels,
-    /// What the conditions of the mode compare, that before a change at this instant.
+    /// Values that the conditions of the mode compare; at a change, of the mode before.
     Conditions,
 }
 

@@ -233,7 +233,8 @@ pub fn export(
     let plan = prepared.plan(origin, prefix);
     let Code { header, source, parameters, translation } = Code::new(&plan)?;
     let vectors = &prepared.vectors;
-    let accuracy = accuracy::output_accuracies(scenario, vectors);
+    let accuracy =
+        accuracy::output_accuracies(scenario, vectors).map_err(|fault| ExportError::Vectors(fault.into()))?;
     let hashes: Vec<(u64, u64)> =
         HASHED_CYCLES.into_iter().zip(self_tests(&prepared.system, HASHED_CYCLES)).collect();
     let mut files: Vec<PackageFile> =
