@@ -4,11 +4,12 @@ use crate::util::Dir;
 
 #[test]
 fn two_exports_have_equal_bytes() {
-    let dir = Dir::with(&["relay-fixed", "earth-observer"]);
+    let dir = Dir::with(&["relay-fixed", "earth-observer", "cubesat-day"]);
     for (scenario, options) in [
         ("relay-fixed", ""),
         ("earth-observer", "--fmi 2 --part plant"),
         ("earth-observer", "--part controller"),
+        ("cubesat-day", "--part controller --sources --fmi 2"),
     ] {
         for out in ["a.fmu", "b.fmu"] {
             dir.run(&format!("export-fmu {scenario}.toml {options} -o {out} --force")).exits(0);
@@ -52,6 +53,34 @@ fn an_fmu_holds_the_libraries_of_several_platforms() {
     ] {
         dir.run(&format!("export-fmu relay-fixed.toml {options} -o c.fmu")).exits(2).says(&[words]);
         assert!(!dir.has("c.fmu"));
+    }
+}
+
+#[test]
+fn sources_have_the_flight_code_and_no_library() {
+    let dir = Dir::with(&["earth-observer", "relay-adaptive"]);
+    for (version, build) in [("2", false), ("3", true)] {
+        dir.run(&format!(
+            "export-fmu earth-observer.toml --part controller --sources --fmi {version} -o a.fmu --force"
+        ))
+        .exits(0);
+        let bytes = dir.read("a.fmu");
+        let has = |path: &str| bytes.windows(path.len()).any(|part| part == path.as_bytes());
+        for path in
+            ["earth_observer.c", "earth_observer_parameters.c", "fmu_calls.c", &format!("fmi{version}.c")]
+        {
+            assert!(has(&format!("sources/{path}")), "{path}");
+        }
+        assert_eq!((has("sources/buildDescription.xml"), has("binaries/")), (build, false));
+        assert!(bytes.len() < 100_000, "{}", bytes.len());
+    }
+    for (scenario, options, words) in [
+        ("earth-observer", "--sources", ["--sources", "controller"]),
+        ("earth-observer", "--part controller --sources --library a.so", ["--sources", "--library"]),
+        ("relay-adaptive", "--part controller --sources", ["relay-adaptive.toml:", "^"]),
+    ] {
+        dir.run(&format!("export-fmu {scenario}.toml {options} -o b.fmu")).exits(2).says(&words);
+        assert!(!dir.has("b.fmu"));
     }
 }
 

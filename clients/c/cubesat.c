@@ -1,4 +1,5 @@
-/* The exported control system of scenarios/cubesat-day.toml as the flight software of a run in lockstep:
+/* The exported control system of scenarios/cubesat-day.toml, or of another CubeSat with detumbling, as the flight software of a run in
+ * lockstep:
  *
  *     flexsc export-c scenarios/cubesat-day.toml -o flight --name sat
  *     make -C clients/c cubesat FLIGHT=../../flight
@@ -6,8 +7,11 @@
  *     clients/c/cubesat 127.0.0.1 5010 udp 30000
  *
  * Attitude filter, modes and laws are those of the export. Moments of B-dot and torques go to the actuators of the server, where the
- * scenario's law unloads the wheels; targets are those of the server's modes. Arguments: host, port, transport, and the time at which
- * the computer fails for 10 s. Then it begins with nothing but the mode, which it has kept, and the readings. */
+ * scenario's law unloads the wheels; targets are those of the server's modes. The rows of the log are those of `flexsc simulate` to the
+ * last bit. With -DTRACKER_MODES=0x6 it is that of scenarios/safe-mode.toml, with -DTRACKER_MODES=0 of detumble-and-point.toml.
+ *
+ * Arguments: host, port, transport, and the time at which the computer fails for 10 s. Then it begins with the readings, and with what a
+ * computer keeps: the mode, how often each was entered, and the time of the start. */
 #include "flexsc_lockstep.h"
 #include "sat.h"
 
@@ -18,32 +22,30 @@
 /* Time without the computer (s). */
 #define OUTAGE 10
 
+/* Modes in which the star tracker is in use, one bit each; none without one. */
+#ifndef TRACKER_MODES
+#define TRACKER_MODES 0x1f
+#endif
+
 /* Mode in which the B-dot law commands the magnetorquers. */
 #define DETUMBLE 0
 
 static flexsc_client client;
 static sat_state state;
 /* Times of the next test of the conditions, of the next decision and of the last reading of the star tracker. */
-static sat_ticks next_test, next_step, last_tracker;
+static sat_ticks next_test, next_step;
+static sat_ticks period;
 static int64_t mode;
+#if TRACKER_MODES
+/* Time of its last reading, or at which it came into use. */
+static sat_ticks last_tracker;
+#endif
+/* Kept through a failure: the supervisor with the time of the start, and the modes with their entries. */
+static sat_state kept;
 
 static bool is_before(sat_ticks a, sat_ticks b)
 {
     return a.whole < b.whole || (a.whole == b.whole && a.part < b.part);
-}
-
-/* Reads the numbers of a field. */
-static void read_numbers(const char *name, double *numbers, int count)
-{
-    const int field = flexsc_find(&client, name);
-    for (int index = 0; index < count; index++) {
-        numbers[index] = flexsc_number(&client, field, index);
-    }
-}
-
-static bool is_new(const char *name)
-{
-    return flexsc_integer(&client, flexsc_find(&client, name), 0) == FLEXSC_NEW;
 }
 
 /* Begins, at the start of the run or after the computer has failed. */
@@ -53,15 +55,19 @@ static void begin(sat_ticks now)
     sat_start_output started;
     memset(&state, 0x5a, sizeof state);
     sat_init(&state, now);
+#if TRACKER_MODES
     if (client.cycle > 0) {
         memset(&start, 0, sizeof start);
-        read_numbers("star_tracker.attitude", start.attitude, 4);
+        flexsc_read(&client, "star_tracker.attitude", start.attitude, 4);
     }
+#endif
     sat_start(&state, now, &start, &started);
     if (client.cycle > 0) {
         const sat_enter_input input = {.mode = mode};
         sat_enter_output entered;
         sat_enter(&state, now, &input, &entered);
+        state.supervisor.started = kept.supervisor.started;
+        memcpy(state.modes, kept.modes, sizeof state.modes);
     }
     next_test = now;
     next_step = now;
@@ -70,20 +76,22 @@ static void begin(sat_ticks now)
 /* Gives the filter and the B-dot law the readings that have come since the last cycle. */
 static void sample(sat_ticks now)
 {
-    sat_sample_input input = {.gyro_is_valid = is_new("gyro.status"),
-                              .magnetometer_is_valid = is_new("magnetometer.status"),
-                              .sun_sensor_is_valid = is_new("sun_sensor.status"),
-                              .star_tracker_is_valid = is_new("star_tracker.status")};
+    sat_sample_input input = {.gyro_is_valid = flexsc_is_new(&client, "gyro"),
+                              .magnetometer_is_valid = flexsc_is_new(&client, "magnetometer"),
+                              .sun_sensor_is_valid = flexsc_is_new(&client, "sun_sensor")};
     sat_sample_output output;
+#if TRACKER_MODES
+    input.star_tracker_is_valid = flexsc_is_new(&client, "star_tracker");
     if (input.star_tracker_is_valid) {
         last_tracker = now;
     }
-    read_numbers("gyro.rate", input.gyro_rate, 3);
-    read_numbers("magnetometer.field", input.magnetometer_vector, 3);
-    read_numbers("magnetometer.reference", input.magnetometer_reference, 3);
-    read_numbers("sun_sensor.direction", input.sun_sensor_vector, 3);
-    read_numbers("sun_sensor.reference", input.sun_sensor_reference, 3);
-    read_numbers("star_tracker.attitude", input.star_tracker_attitude, 4);
+    flexsc_read(&client, "star_tracker.attitude", input.star_tracker_attitude, 4);
+#endif
+    flexsc_read(&client, "gyro.rate", input.gyro_rate, 3);
+    flexsc_read(&client, "magnetometer.field", input.magnetometer_vector, 3);
+    flexsc_read(&client, "magnetometer.reference", input.magnetometer_reference, 3);
+    flexsc_read(&client, "sun_sensor.direction", input.sun_sensor_vector, 3);
+    flexsc_read(&client, "sun_sensor.reference", input.sun_sensor_reference, 3);
     sat_sample(&state, now, &input, &output);
     if (input.magnetometer_is_valid) {
         sat_field_input field;
@@ -98,14 +106,24 @@ static void supervise(sat_ticks now)
 {
     sat_supervise_input input;
     sat_supervise_output output;
-    read_numbers("reference.attitude", input.target_attitude, 4);
+    memset(&input, 0, sizeof input);
+#if TRACKER_MODES
+    flexsc_read(&client, "conditions.attitude", input.target_attitude, 4);
     input.silent_star_tracker = (double)(now.whole - last_tracker.whole) + (double)(now.part - last_tracker.part) * 1e-15;
+#endif
     sat_supervise(&state, now, &input, &output);
     if (output.has_changed) {
         printf("mode %d at %lld s\n", (int)output.mode, (long long)now.whole);
         next_step = now;
+#if TRACKER_MODES
+        if ((TRACKER_MODES >> mode & 1) == 0) {
+            last_tracker = now;
+        }
+#endif
     }
     mode = output.mode;
+    period.whole = output.period_whole;
+    period.part = output.period_part;
     next_test.whole = output.has_next ? output.next_whole : INT64_MAX;
     next_test.part = output.next_part;
 }
@@ -115,21 +133,20 @@ static int step(sat_ticks now)
 {
     sat_step_input input;
     sat_step_output output;
-    read_numbers("reference.attitude", input.target_attitude, 4);
-    read_numbers("reference.angle", input.reference_angle, 3);
-    read_numbers("reference.rate", input.reference_rate, 3);
-    read_numbers("reference.acceleration", input.reference_acceleration, 3);
-    read_numbers("wheels.speed", input.wheel_speed, 3);
+    flexsc_read(&client, "reference.attitude", input.target_attitude, 4);
+    flexsc_read(&client, "reference.angle", input.reference_angle, 3);
+    flexsc_read(&client, "reference.rate", input.reference_rate, 3);
+    flexsc_read(&client, "reference.acceleration", input.reference_acceleration, 3);
+    flexsc_read(&client, "wheels.speed", input.wheel_speed, 3);
     sat_step(&state, now, &input, &output);
-    next_step = now;
-    if (output.mode == DETUMBLE) {
-        next_step.whole += 1;
-        return flexsc_command(&client, output.moment, FLEXSC_MOMENT);
-    }
-    next_step.part += INT64_C(500000000000000);
+    next_step.whole = now.whole + period.whole;
+    next_step.part = now.part + period.part;
     if (next_step.part >= INT64_C(1000000000000000)) {
         next_step.part -= INT64_C(1000000000000000);
         next_step.whole += 1;
+    }
+    if (output.mode == DETUMBLE) {
+        return flexsc_command(&client, output.moment, FLEXSC_MOMENT);
     }
     return flexsc_command(&client, output.torque, FLEXSC_TORQUE);
 }
@@ -155,6 +172,9 @@ int main(int count, char **arguments)
         const bool has_failed = now.whole >= failure && now.whole < failure + OUTAGE;
         if (!is_up && !has_failed) {
             begin(now);
+        }
+        if (is_up && has_failed) {
+            kept = state;
         }
         is_up = !has_failed;
         int sent;

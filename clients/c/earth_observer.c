@@ -20,30 +20,16 @@
 static flexsc_client client;
 static aocs_state state;
 
-/* Reads the numbers of a field. */
-static void read_numbers(const char *name, double *numbers, int count)
-{
-    const int field = flexsc_find(&client, name);
-    for (int index = 0; index < count; index++) {
-        numbers[index] = flexsc_number(&client, field, index);
-    }
-}
-
-static bool is_new(const char *name)
-{
-    return flexsc_integer(&client, flexsc_find(&client, name), 0) == FLEXSC_NEW;
-}
-
 /* Gives the filter the readings that have come since the last cycle. */
 static void sample(aocs_ticks now)
 {
-    aocs_sample_input input = {.gyro_is_valid = is_new("gyro.status"), .star_tracker_is_valid = is_new("star_tracker.status")};
+    aocs_sample_input input = {.gyro_is_valid = flexsc_is_new(&client, "gyro"), .star_tracker_is_valid = flexsc_is_new(&client, "star_tracker")};
     aocs_sample_output output;
     if (!input.gyro_is_valid && !input.star_tracker_is_valid) {
         return;
     }
-    read_numbers("gyro.rate", input.gyro_rate, 3);
-    read_numbers("star_tracker.attitude", input.star_tracker_attitude, 4);
+    flexsc_read(&client, "gyro.rate", input.gyro_rate, 3);
+    flexsc_read(&client, "star_tracker.attitude", input.star_tracker_attitude, 4);
     aocs_sample(&state, now, &input, &output);
 }
 
@@ -52,11 +38,11 @@ static int step(aocs_ticks now)
 {
     aocs_step_input input;
     aocs_step_output output;
-    read_numbers("reference.attitude", input.target_attitude, 4);
-    read_numbers("reference.angle", input.reference_angle, 3);
-    read_numbers("reference.rate", input.reference_rate, 3);
-    read_numbers("reference.acceleration", input.reference_acceleration, 3);
-    read_numbers("wheels.speed", input.wheel_speed, 4);
+    flexsc_read(&client, "reference.attitude", input.target_attitude, 4);
+    flexsc_read(&client, "reference.angle", input.reference_angle, 3);
+    flexsc_read(&client, "reference.rate", input.reference_rate, 3);
+    flexsc_read(&client, "reference.acceleration", input.reference_acceleration, 3);
+    flexsc_read(&client, "wheels.speed", input.wheel_speed, 4);
     aocs_step(&state, now, &input, &output);
     return flexsc_command(&client, output.torque, FLEXSC_TORQUE);
 }

@@ -412,6 +412,21 @@ int64_t flexsc_integer(const flexsc_client *client, int field, int component)
     return at && type != 'd' ? as_signed(read_bits(at, size_of(type))) : 0;
 }
 
+void flexsc_read(const flexsc_client *client, const char *name, double *numbers, int count)
+{
+    const int field = flexsc_find(client, name);
+    for (int index = 0; index < count; index++) {
+        numbers[index] = flexsc_number(client, field, index);
+    }
+}
+
+int flexsc_is_new(const flexsc_client *client, const char *sensor)
+{
+    char name[64];
+    snprintf(name, sizeof name, "%s.status", sensor);
+    return flexsc_integer(client, flexsc_find(client, name), 0) == FLEXSC_NEW;
+}
+
 double flexsc_number(const flexsc_client *client, int field, int component)
 {
     char type;

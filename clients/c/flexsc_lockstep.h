@@ -92,6 +92,12 @@ double flexsc_number(const flexsc_client *client, int field, int component);
 /* Returns a component of an integer field of the present cycle; 0 if there is none. */
 int64_t flexsc_integer(const flexsc_client *client, int field, int component);
 
+/* Reads the first numbers of a field of the present cycle by its name; NaN where there are none. */
+void flexsc_read(const flexsc_client *client, const char *name, double *numbers, int count);
+
+/* Returns true if a reading of a sensor, such as "gyro", has come since the last cycle. */
+int flexsc_is_new(const flexsc_client *client, const char *sensor);
+
 /* Answers the present cycle with commands of one quantity about all axes. Returns 0, or -1 with the text `error`. */
 int flexsc_command(flexsc_client *client, const double *values, int quantity);
 

@@ -42,15 +42,19 @@ fn main() -> io::Result<()> {
         if own.is_none() {
             conversions(name, &text, &mut twins);
         }
+        let source = match own {
+            Some(single) => format!("crates/flight-precision/src/single/{single}.rs"),
+            None => format!("crates/flight/src/{name}.rs, in single precision"),
+        };
         let name = own.unwrap_or(name);
         let path = Path::new(&out).join(format!("{name}.rs"));
         fs::write(&path, &text)?;
         let path = path.display().to_string();
         let _ = writeln!(modules, "#[path = {path:?}]\npub mod {name};");
-        let _ = writeln!(sources, "    ({name:?}, include_str!({path:?})),");
+        let _ = writeln!(sources, "    ({name:?}, {source:?}, include_str!({path:?})),");
     }
     let all = format!(
-        "{modules}\n/// Files of the functions in single precision: names and texts.\npub const SOURCES: [(&str, &str); {}] = [\n{sources}];\n\n{twins}",
+        "{modules}\n/// Files of the functions in single precision: names, files of the repository, and texts.\npub const SOURCES: [(&str, &str, &str); {}] = [\n{sources}];\n\n{twins}",
         names.len()
     );
     fs::write(Path::new(&out).join("functions.rs"), all)

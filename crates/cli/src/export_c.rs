@@ -113,18 +113,14 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         Some(name) => scenario.in_mode(name)?,
         None => scenario,
     };
-    let origin = args
-        .scenario
-        .file_name()
-        .map_or_else(|| "scenario".to_owned(), |name| name.to_string_lossy().into_owned());
+    let origin = file_name(&args.scenario);
     let prefix = match &args.name {
         Some(name) => checked_name(name)?,
         None => default_name(&args.scenario),
     };
     let guests: BTreeSet<Guest> = args.guest.iter().map(|name| Guest::from(*name)).collect();
     let guests: Vec<Guest> = guests.into_iter().collect();
-    let mode = args.mode.iter().map(|name| format!("--mode {name}"));
-    let changes: Vec<String> = set.iter().map(|set| format!("--set {set}")).chain(mode).collect();
+    let changes = stated_changes(&set, args.mode.as_deref());
     let origin = ExportOrigin { file: &origin, changes: &changes };
     if !scenario.flight_precision.is_double() && !guests.is_empty() {
         let reason = "must be `double` for a `--guest`, whose messages have doubles";
@@ -182,8 +178,19 @@ pub fn run_vectors(args: &VectorsArgs) -> Result<(), CliError> {
     Ok(())
 }
 
+/// Returns the changes of a scenario as options.
+pub(crate) fn stated_changes(set: &[String], mode: Option<&str>) -> Vec<String> {
+    let mode = mode.map(|name| format!("--mode {name}"));
+    set.iter().map(|set| format!("--set {set}")).chain(mode).collect()
+}
+
+/// Returns the file name of a scenario.
+pub(crate) fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| "scenario".to_owned(), |name| name.to_string_lossy().into_owned())
+}
+
 /// Returns the error of a scenario that is not exported.
-fn refused(path: &Path, error: ExportError) -> CliError {
+pub(crate) fn refused(path: &Path, error: ExportError) -> CliError {
     match error {
         ExportError::Vectors(VectorError::NotExportable(fault)) => match scenario::document(path) {
             Ok(document) => document.at_key(&ConfigError::new(fault.key, fault.reason)).into(),
@@ -210,7 +217,7 @@ fn checked_name(name: &str) -> Result<String, CliError> {
 }
 
 /// Returns the prefix that a scenario's file name gives.
-fn default_name(path: &Path) -> String {
+pub(crate) fn default_name(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let mut name: String = stem
         .chars()

@@ -7,10 +7,15 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use flexsc_cosim::{CoSimulationError, FmiVersion, FmuContent, FmuPart, Platform, find_library, fmu_bytes};
+use flexsc_core::Scenario;
+use flexsc_cosim::{
+    CoSimulationError, FmiVersion, FmuContent, FmuPart, Platform, SourceFmuError, find_library, fmu_bytes,
+    source_fmu_bytes,
+};
+use flexsc_export_c::package::ExportOrigin;
 
 use crate::error::CliError;
-use crate::{files, out, say, scenario};
+use crate::{export_c, files, out, say, scenario};
 
 /// Environment variable with the path of the library, which the Python package sets.
 const LIBRARY: &str = "FLEXSC_FMI_LIBRARY";
@@ -35,6 +40,9 @@ pub struct ExportFmuArgs {
     /// program]
     #[arg(long, value_name = "[PLATFORM=]FILE", num_args = 1.., value_parser = library_of_platform)]
     library: Vec<StatedLibrary>,
+    /// The exported C of the controller, with attitude filter and modes, in place of a library: for any platform
+    #[arg(long, conflicts_with = "library")]
+    sources: bool,
     /// File to write: FILE.fmu
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
@@ -109,6 +117,21 @@ fn library() -> Result<PathBuf, CliError> {
     found.map_err(|error| CliError::Arguments(format!("{error} with --library")))
 }
 
+/// Returns the FMU of a scenario's control system as sources.
+fn source_bytes(args: &ExportFmuArgs, scenario: &Scenario, version: FmiVersion) -> Result<Vec<u8>, CliError> {
+    let path = &args.scenario;
+    if args.part != Part::Controller {
+        return Err(CliError::Arguments("--sources: is for `--part controller`".to_owned()));
+    }
+    let (file, changes) =
+        (export_c::file_name(path), export_c::stated_changes(&args.set, args.mode.as_deref()));
+    let origin = ExportOrigin { file: &file, changes: &changes };
+    source_fmu_bytes(scenario, origin, &export_c::default_name(path), version).map_err(|error| match error {
+        SourceFmuError::Export(error) => export_c::refused(path, error),
+        SourceFmuError::Archive(error) => error.into(),
+    })
+}
+
 pub fn run(args: &ExportFmuArgs) -> Result<(), CliError> {
     let libraries = args.library.iter().map(|(_, path)| path);
     let inputs: Vec<&Path> = [&args.scenario].into_iter().chain(libraries).map(PathBuf::as_path).collect();
@@ -127,6 +150,12 @@ pub fn run(args: &ExportFmuArgs) -> Result<(), CliError> {
         Some(name) => scenario.in_mode(name)?,
         None => scenario,
     };
+    if args.sources {
+        let bytes = source_bytes(args, &scenario, version)?;
+        files::write(&args.out, &bytes, args.force)?;
+        say!("{}", args.out.display());
+        return Ok(());
+    }
     let content = FmuContent::new(&scenario, part)?;
     let stated = if args.library.is_empty() { vec![(None, library()?)] } else { args.library.clone() };
     let read = |(platform, path): (Option<&'static Platform>, PathBuf)| {

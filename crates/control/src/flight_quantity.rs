@@ -56,7 +56,7 @@ flight_quantities! {
     /// Whether laws may act on the elastic modes.
     ElasticTrust "modes_are_trusted", "" "modes_are_trusted", "", "true if the law may act on the modes";
     /// Attitude from which angles count.
-    TargetAttitude "target_attitude", "" "target_attitude", "", "target attitude: quaternion w, x, y, z";
+    TargetAttitude "target_attitude", "reference" "attitude", "", "target attitude: quaternion w, x, y, z";
     /// Angles of the reference (rad).
     ReferenceAngle "reference_angle", "reference" "angle", "rad", "reference: angle from the target";
     /// Rates of the reference (rad/s).

@@ -8,7 +8,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use crate::content::{FmuContent, PART, SCENARIO};
-use crate::description::model_description;
+use crate::description::{FmuInterface, model_description};
 use crate::error::CoSimulationError;
 use crate::fmi_version::{FmiVersion, MODEL_IDENTIFIER};
 use crate::fmu_run::FmuRun;
@@ -33,7 +33,8 @@ pub fn fmu_bytes(
     version: FmiVersion,
 ) -> Result<Vec<u8>, CoSimulationError> {
     let run = FmuRun::new(content.clone())?;
-    let description = model_description(run.scenario(), run.table(), &content.token(), version);
+    let interface = FmuInterface { identifier: MODEL_IDENTIFIER, has_events: true, sources: &[] };
+    let description = model_description(run.scenario(), run.table(), &content.token(), version, &interface);
     let mut binaries: Vec<(String, Cow<'_, [u8]>)> = Vec::new();
     for (platform, library) in libraries {
         let folder = platform.folder(version)?;
@@ -66,7 +67,7 @@ fn unpacked(library: &[u8]) -> Result<Cow<'_, [u8]>, ZipError> {
 }
 
 /// Packs files with the date 1980-01-01 and the permissions of a library.
-fn archive(files: &[(String, &[u8])]) -> Result<Vec<u8>, ZipError> {
+pub(crate) fn archive(files: &[(String, &[u8])]) -> Result<Vec<u8>, ZipError> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)

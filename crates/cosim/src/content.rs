@@ -54,6 +54,19 @@ impl FmuPart {
     }
 }
 
+/// Returns the token of a part of a scenario, as TOML.
+pub(crate) fn token_of(part: &str, toml: &str) -> String {
+    let part = [env!("CARGO_PKG_VERSION"), part].map(str::as_bytes);
+    let mut token = String::from("{");
+    for half in ["head", "tail"] {
+        let sum = fnv1a_of(&[half.as_bytes(), part[0], part[1], toml.as_bytes()]);
+        // Writing to a string cannot fail.
+        let _ = write!(token, "{sum:016x}");
+    }
+    token.push('}');
+    token
+}
+
 /// Content of an FMU beside the library and the model description.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FmuContent {
@@ -105,15 +118,7 @@ impl FmuContent {
     /// Returns the token of the content, with which an importer instantiates the FMU. It changes with the scenario, the
     /// part and the version of flexsc.
     pub fn token(&self) -> String {
-        let part = [env!("CARGO_PKG_VERSION"), self.part.name()].map(str::as_bytes);
-        let mut token = String::from("{");
-        for half in ["head", "tail"] {
-            let sum = fnv1a_of(&[half.as_bytes(), part[0], part[1], self.toml.as_bytes()]);
-            // Writing to a string cannot fail.
-            let _ = write!(token, "{sum:016x}");
-        }
-        token.push('}');
-        token
+        token_of(self.part.name(), &self.toml)
     }
 
     /// Returns the scenario.

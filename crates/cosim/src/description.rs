@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use flexsc_core::Scenario;
 
-use crate::fmi_version::{FmiVersion, MODEL_IDENTIFIER};
+use crate::fmi_version::FmiVersion;
 use crate::units::{BASES, BaseExponents};
 use crate::variable::{Causality, ClockRole, ValueKind, Variable, VariableStart};
 use crate::variable_table::VariableTable;
@@ -16,14 +16,26 @@ const RESOLUTION: u64 = 1_000_000_000_000_000;
 /// Category of all messages.
 const LOG_CATEGORY: &str = "logStatusError";
 
+/// Interface of an FMU's code.
+#[derive(Debug)]
+pub struct FmuInterface<'a> {
+    /// Name of its library.
+    pub identifier: &'a str,
+    /// True if steps stop at events, in FMI 3.0.
+    pub has_events: bool,
+    /// Source files that an importer compiles; none of an FMU with libraries.
+    pub sources: &'a [String],
+}
+
 /// Returns the model description of an FMU.
 pub fn model_description(
     scenario: &Scenario,
     table: &VariableTable,
     token: &str,
     version: FmiVersion,
+    interface: &FmuInterface<'_>,
 ) -> String {
-    let writer = DescriptionWriter { table, version, xml: XmlWriter::new() };
+    let writer = DescriptionWriter { table, version, interface, xml: XmlWriter::new() };
     writer.write(scenario, token)
 }
 
@@ -31,6 +43,7 @@ pub fn model_description(
 struct DescriptionWriter<'a> {
     table: &'a VariableTable,
     version: FmiVersion,
+    interface: &'a FmuInterface<'a>,
     xml: XmlWriter,
 }
 
@@ -82,23 +95,28 @@ impl DescriptionWriter<'_> {
     }
 
     fn write_interface(&mut self) {
-        let mut attributes = vec![attribute("modelIdentifier", MODEL_IDENTIFIER)];
-        let names = match self.version {
-            FmiVersion::V3 => [
-                "canGetAndSetFMUState",
-                "canSerializeFMUState",
-                "canHandleVariableCommunicationStepSize",
-                "mightReturnEarlyFromDoStep",
-                "hasEventMode",
-            ]
-            .as_slice(),
-            FmiVersion::V2 => {
-                ["canGetAndSetFMUstate", "canSerializeFMUstate", "canHandleVariableCommunicationStepSize"]
-                    .as_slice()
-            }
+        let mut attributes = vec![attribute("modelIdentifier", self.interface.identifier)];
+        let states = match self.version {
+            FmiVersion::V3 => ["canGetAndSetFMUState", "canSerializeFMUState"],
+            FmiVersion::V2 => ["canGetAndSetFMUstate", "canSerializeFMUstate"],
         };
+        let mut names = Vec::from(states);
+        names.push("canHandleVariableCommunicationStepSize");
+        if self.interface.has_events && self.version == FmiVersion::V3 {
+            names.extend(["mightReturnEarlyFromDoStep", "hasEventMode"]);
+        }
         attributes.extend(names.iter().map(|name| attribute(name, "true")));
-        self.xml.empty("CoSimulation", &attributes);
+        if self.version == FmiVersion::V3 || self.interface.sources.is_empty() {
+            self.xml.empty("CoSimulation", &attributes);
+            return;
+        }
+        self.xml.open("CoSimulation", &attributes);
+        self.xml.open("SourceFiles", &[]);
+        for source in self.interface.sources {
+            self.xml.empty("File", &[attribute("name", source)]);
+        }
+        self.xml.close();
+        self.xml.close();
     }
 
     fn write_units(&mut self) {

@@ -22,10 +22,9 @@ const COUNT: usize = 52;
 pub fn sources_in(precision: Precision) -> Vec<SourceFile<'static>> {
     match precision {
         Precision::Double => flight_sources().to_vec(),
-        Precision::Single => SOURCES
-            .iter()
-            .map(|(module, text)| SourceFile { path: "crates/flight-precision", module, text })
-            .collect(),
+        Precision::Single => {
+            SOURCES.iter().map(|(module, path, text)| SourceFile { path, module, text }).collect()
+        }
     }
 }
 
@@ -85,4 +84,17 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "wheel_allocation",
         "wheel_momentum",
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sources_of_single_precision_name_their_files() {
+        let sources = sources_in(Precision::Single);
+        let path = |module: &str| sources.iter().find(|own| own.module == module).map(|own| own.path);
+        assert_eq!(path("quaternion"), Some("crates/flight/src/quaternion.rs, in single precision"));
+        assert_eq!(path("trigonometry"), Some("crates/flight-precision/src/single/trigonometry.rs"));
+    }
 }

@@ -16,6 +16,7 @@ mod fine_mirrors;
 mod guidance;
 mod loads;
 mod mode_sky;
+mod mode_test;
 mod motion_limits;
 mod mounted_lines;
 mod objective;
@@ -236,7 +237,9 @@ impl Simulation {
     #[inline]
     fn must_decide(&self, event: Event) -> bool {
         let now = self.clock.now();
-        self.laws.must_decide(now, event, &self.estimation.estimates) || self.operation.due() == Some(now)
+        self.laws.must_decide(now, event, &self.estimation.estimates)
+            || self.operation.due() == Some(now)
+            || self.operation.is_tested(now)
     }
 
     /// Takes the sample of the current instant, and updates the estimates with it.
@@ -255,8 +258,10 @@ impl Simulation {
         let now = self.clock.now();
         self.clock.count_decision()?;
         self.end_requirement_segment();
-        self.estimation.predict(now, &self.plant, &self.sensors);
-        self.update_mode(record)?;
+        if self.operation.tested.take().is_none_or(|test| test.at != now) {
+            self.estimation.predict(now, &self.plant, &self.sensors);
+            self.update_mode(record)?;
+        }
         let speeds = || self.loads.wheel_speeds(now, self.plant.truth().rigid_rate);
         let decision = self.laws.decide(now, event, &self.guidance, &mut self.estimation.estimates, &speeds);
         if decision.is_switching() || matches!(event, Event::Guard { axis: 1.., .. }) {
@@ -370,13 +375,17 @@ impl Simulation {
             ..
         } = self;
         let (now, modes, sky) = (clock.now(), operation.sequence(), &**operation.sky());
-        (RunView { now, plant, sensors, estimation, guidance, laws, loads, mirrors, modes, sky }, recorder)
+        let tested = operation.tested.as_ref();
+        let run =
+            RunView { now, plant, sensors, estimation, guidance, laws, loads, mirrors, modes, sky, tested };
+        (run, recorder)
     }
 
     /// Returns the parts of the run for reading.
     fn read_view(&self) -> RunView<'_> {
         let Self { clock, plant, sensors, estimation, guidance, laws, loads, mirrors, operation, .. } = self;
         let (now, modes, sky) = (clock.now(), operation.sequence(), &**operation.sky());
-        RunView { now, plant, sensors, estimation, guidance, laws, loads, mirrors, modes, sky }
+        let tested = operation.tested.as_ref();
+        RunView { now, plant, sensors, estimation, guidance, laws, loads, mirrors, modes, sky, tested }
     }
 }

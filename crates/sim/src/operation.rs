@@ -14,6 +14,7 @@ use flexsc_record::{Command, ModeEvent, ModeTargetStart, Record, Report, Sample}
 
 use super::blinding::BlindingState;
 use super::mode_sky::ModeSky;
+use super::mode_test::TestedConditions;
 use super::run_view::{RunView, motion_error, true_rate};
 use super::{Simulation, SimulationError};
 use flexsc_scenario::Scenario;
@@ -26,6 +27,8 @@ pub struct Operation {
     in_use: Vec<Vec<bool>>,
     /// Sky of the conditions.
     sky: Arc<ModeSky>,
+    /// Last test before a decision from outside.
+    pub(super) tested: Option<TestedConditions>,
 }
 
 impl Operation {
@@ -37,6 +40,7 @@ impl Operation {
             sequence: ModeSequence::new(scenario.mode_tables(), &crossings),
             in_use: (0..scenario.mode.len()).map(|mode| scenario.sensors_in_use(mode)).collect(),
             sky: Arc::new(sky),
+            tested: None,
         }
     }
 
@@ -44,6 +48,12 @@ impl Operation {
     #[inline]
     pub fn due(&self) -> Option<Instant> {
         self.sequence.as_ref().and_then(ModeSequence::due)
+    }
+
+    /// Returns true if the conditions were tested at an instant, before a decision from outside.
+    #[inline]
+    pub fn is_tested(&self, now: Instant) -> bool {
+        self.tested.as_ref().is_some_and(|test| test.at == now)
     }
 
     /// Returns the sky of the conditions.
@@ -101,6 +111,9 @@ impl Simulation {
         let before = sequence.active();
         let readings = sequence.read(now, &RunView { modes: Some(&sequence), ..self.read_view() });
         let change = sequence.test(now, &readings, self.laws.precision);
+        if let Some(test) = self.operation.tested.as_mut().filter(|test| test.at == now) {
+            test.readings.clone_from(&readings);
+        }
         self.trace_mode(now, sequence.active(), readings);
         self.operation.sequence = Some(sequence);
         let Some(change) = change else { return Ok(()) };

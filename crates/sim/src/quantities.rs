@@ -29,6 +29,8 @@ pub enum QuantityGroup {
     Reference,
     /// Wheels, as available to their drives.
     Wheels,
+    /// Values that the conditions of the mode compare; at a change, of the mode before.
+    Conditions,
 }
 
 impl QuantityGroup {
@@ -40,6 +42,7 @@ impl QuantityGroup {
             Self::Estimated | Self::Predicted => "estimate",
             Self::Reference => "reference",
             Self::Wheels => "wheels",
+            Self::Conditions => "conditions",
         }
     }
 
@@ -239,6 +242,15 @@ quantities! {
         let speeds = run.wheel_speeds();
         speeds.first()?;
         give(out, speeds)
+    };
+    Conditions "attitude", Of(""), Quaternion, text("target attitude of the mode whose conditions are tested, before a change at this instant") => |run, out| {
+        run.modes.and(run.estimation.origin().attitude())?;
+        give(out, run.compared_attitude())
+    };
+    Conditions "rate", Of("rad/s"), Axes, text("rate of the reference of that mode") => |run, out| run.modes.and_then(|_| give(out, run.compared_rate()));
+    Conditions "readings", Of(""), List, text("values that the conditions of all modes compare, in the order in which they name them; NaN of those that are not tested now") => |run, out| {
+        run.modes?;
+        give(out, run.compared_readings())
     };
 }
 

@@ -106,7 +106,10 @@ impl<'a> QuantityReader<'a> {
     fn law_inputs(&self) -> &LawInputs {
         self.law_inputs.get_or_init(|| {
             let mut estimates = self.estimation.estimates.clone();
-            self.estimation.predict_into(self.now, self.plant, self.sensors, &mut estimates);
+            // A test of the mode has predicted them, and a change has moved them to its target.
+            if self.tested.is_none_or(|test| test.at != self.now) {
+                self.estimation.predict_into(self.now, self.plant, self.sensors, &mut estimates);
+            }
             let square: f64 = estimates.iter().map(|estimate| estimate.angle * estimate.angle).sum();
             for estimate in &mut estimates {
                 estimate.total_angle = f64::sqrt(square);

@@ -112,6 +112,7 @@ impl Lockstep<'_> {
         while !self.simulation.is_finished() {
             let (cycle, now) = (self.cycles, self.simulation.time());
             self.session.wait_for_cycle(cycle, now).map_err(StopReason::Session)?;
+            self.simulation.test_modes(record)?;
             let telemetry = self.simulation.telemetry(&self.session.layout().telemetry)?;
             let commands = self.session.exchange(cycle, now, before, &telemetry);
             let commands = commands.map_err(StopReason::Session)?;

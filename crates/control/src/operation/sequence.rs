@@ -109,6 +109,11 @@ impl ModeSequence {
         clocks.filter_map(instant).flat_map(|at| [at, at + Span::TICK]).chain(of_sky)
     }
 
+    /// Returns the number of readings of all conditions.
+    pub fn reading_count(&self) -> usize {
+        self.tables.readings.len()
+    }
+
     /// Returns the readings of the supervisor that conditions of the active mode compare at `now`; NaN of all others.
     pub fn read(&self, now: Instant, readings: &dyn ModeReadings) -> Vec<f64> {
         let is_sample = now.ticks() >= self.supervisor.next;

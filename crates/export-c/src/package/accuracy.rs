@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use flexsc_core::Scenario;
 use flexsc_flight_precision::Precision;
 
-use crate::control_system::{CallLayout, ControlSystem, NumberKind};
+use crate::control_system::{CallLayout, ControlSystem, NotExportable, NumberKind};
 use crate::vectors::CallVector;
 
 /// Output in single precision beside that in double precision.
@@ -24,15 +24,22 @@ pub struct OutputAccuracy {
 }
 
 /// Returns the accuracy of each output over the calls of a run; nothing in double precision.
-pub fn output_accuracies(scenario: &Scenario, vectors: &[CallVector]) -> Vec<OutputAccuracy> {
+///
+/// # Errors
+/// Fails if the control system cannot compute in double precision.
+pub fn output_accuracies(
+    scenario: &Scenario,
+    vectors: &[CallVector],
+) -> Result<Vec<OutputAccuracy>, NotExportable> {
     if scenario.flight_precision.is_double() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let double = scenario.clone().with(|written| written.flight_precision = Precision::Double);
-    let Ok(mut system) = double.map_err(drop).and_then(|double| ControlSystem::new(&double).map_err(drop))
-    else {
-        return Vec::new();
-    };
+    let double = double.map_err(|error| {
+        let reason = format!("has no double precision beside it, for the accuracy of the outputs: {error}");
+        NotExportable::new("flight_precision", reason)
+    })?;
+    let mut system = ControlSystem::new(&double)?;
     let calls = system.calls();
     let mut all: Vec<Vec<OutputAccuracy>> = calls.iter().map(untested_outputs).collect();
     for vector in vectors {
@@ -49,7 +56,7 @@ pub fn output_accuracies(scenario: &Scenario, vectors: &[CallVector]) -> Vec<Out
         }
     }
     let is_moving = |own: &OutputAccuracy| own.difference > 0.0;
-    all.into_iter().flatten().filter(is_moving).collect()
+    Ok(all.into_iter().flatten().filter(is_moving).collect())
 }
 
 /// Returns the accuracies of the outputs of a function, before its first call.

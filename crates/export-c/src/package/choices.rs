@@ -24,11 +24,11 @@ pub fn constant_choices(system: &ControlSystem) -> ConstantChoices {
     let mut all = Choices::default();
     all.add(system);
     let mut constant = ConstantChoices::default();
-    constant.flag("has_rate_limit", all.has_rate_limit);
-    constant.flag("has_integral", all.has_integral);
-    constant.flag("has_gain", all.has_gain);
-    constant.flag("is_least_largest", all.is_least_largest);
-    constant.flag("is_magnetic", all.is_magnetic);
+    constant.flag(("AttitudeFeedback", "has_rate_limit"), all.has_rate_limit);
+    constant.flag(("AttitudeFeedback", "has_integral"), all.has_integral);
+    constant.flag(("AttitudeObservation", "has_gain"), all.has_gain);
+    constant.flag(("allocate", "is_least_largest"), all.is_least_largest);
+    constant.flag(("MomentumUnloading", "is_magnetic"), all.is_magnetic);
     constant.variant("ErrorMeasure", all.measures);
     constant.variant("ObservationKind", all.observations);
     constant

@@ -39,9 +39,14 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
         "/* Version: the exporter, and the SHA-256 of the scenario in `scenario.toml`. */\nextern const char {prefix}_version[{}];\n",
         plan.version().len() + 1
     );
+    let kept = if super::signature::inits_at_time(plan) {
+        " Times of the run and entries of modes count from here: a computer that starts again in flight writes\n * the members `supervisor.started` and `modes` of the state that it has kept, after `enter`."
+    } else {
+        ""
+    };
     let _ = writeln!(
         text,
-        "/* Sets the state before the first call. */\n{};\n",
+        "/* Sets the state before the first call.{kept} */\n{};\n",
         super::signature::init_signature(plan)
     );
     text.push_str(&parameters::declarations(plan));

@@ -30,11 +30,12 @@ use sha2::{Digest, Sha256};
 use crate::control_system::{CallLayout, ControlSystem, ExcludedPart};
 use crate::flight_sources::sources_in;
 use crate::self_test::self_tests;
-use crate::translate::{TranslationError, in_single, translate_pruned};
+use crate::translate::{Translation, TranslationError, in_single, translate_pruned};
 use crate::vectors::{self, CallVector, VectorError};
 
 pub use accuracy::OutputAccuracy;
 pub use guests::Guest;
+pub use parameters::FlightParameter;
 
 /// Numbers of cycles for which the hash of the self-test is exported.
 pub const HASHED_CYCLES: [u64; 3] = [1000, 20_000, 1_000_000];
@@ -105,7 +106,7 @@ struct Plan<'a> {
     /// Parts of the control loop that are not in the code.
     excluded_parts: &'a [ExcludedPart],
     /// Numbers that are tuned in flight.
-    parameters: &'a [parameters::FlightParameter],
+    parameters: &'a [FlightParameter],
     /// Inputs with which estimators start in run 0; `None` without an estimator, or without vectors.
     run_start: Option<&'a [u64]>,
     /// Name of the mode whose laws are written; `None` of the whole control system.
@@ -124,9 +125,95 @@ impl Plan<'_> {
         if self.precision.is_double() { "doubles" } else { "floats" }
     }
 
+    /// Returns C with the type of the numbers in which the code computes.
+    fn in_precision(&self, text: String) -> String {
+        if self.precision.is_double() { text } else { in_single(&text) }
+    }
+
     /// Returns the name in C of a type of the flight code.
     fn type_name(&self, name: &str) -> String {
         format!("{}_{}", self.prefix, snake(name))
+    }
+}
+
+/// Control system of a scenario with what its files state beside the functions.
+struct Prepared {
+    system: ControlSystem,
+    calls: Vec<CallLayout>,
+    vectors: Vec<CallVector>,
+    excluded_parts: Vec<ExcludedPart>,
+    /// Scenario with all defaults, and its SHA-256.
+    effective: String,
+    digest: String,
+    parameters: Vec<FlightParameter>,
+    precision: Precision,
+}
+
+impl Prepared {
+    /// Prepares the control system of a scenario with at most `most` vectors of its run.
+    fn new(scenario: &Scenario, most: usize) -> Result<Self, ExportError> {
+        let system = ControlSystem::new(scenario).map_err(|error| ExportError::Vectors(error.into()))?;
+        let vectors = vectors::record(scenario, most).map_err(ExportError::Vectors)?;
+        let effective = scenario.to_toml();
+        let digest =
+            Sha256::digest(&effective).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
+        Ok(Self {
+            calls: system.calls(),
+            vectors,
+            excluded_parts: system.excluded_parts(scenario),
+            effective,
+            digest,
+            parameters: parameters::parameters(&system),
+            precision: scenario.flight_precision,
+            system,
+        })
+    }
+
+    /// Returns the data of the files with names that begin with `prefix`.
+    fn plan<'a>(&'a self, origin: ExportOrigin<'a>, prefix: &'a str) -> Plan<'a> {
+        Plan {
+            prefix,
+            origin,
+            digest: &self.digest,
+            system: &self.system,
+            calls: &self.calls,
+            excluded_parts: &self.excluded_parts,
+            parameters: &self.parameters,
+            run_start: start_values::find(&self.calls, &self.vectors),
+            mode: None,
+            precision: self.precision,
+        }
+    }
+}
+
+/// Code of a control system in C.
+struct Code {
+    header: String,
+    source: String,
+    /// Check and change of the parameters; `None` without parameters.
+    parameters: Option<String>,
+    translation: Translation,
+}
+
+impl Code {
+    /// Writes the code of a control system.
+    fn new(plan: &Plan<'_>) -> Result<Self, ExportError> {
+        let (functions, state) = match plan.system {
+            ControlSystem::Modes(own) => (modes::functions(plan, own), modes::state(plan, own)),
+            _ => (calls::functions(plan), header::state(plan)),
+        };
+        let functions = plan.in_precision(functions);
+        let sources = sources_in(plan.precision);
+        let roots = source::roots(plan.system, &functions);
+        let choices = choices::constant_choices(plan.system);
+        let translation =
+            translate_pruned(&sources, &roots, plan.prefix, &choices).map_err(ExportError::Translation)?;
+        Ok(Self {
+            header: plan.in_precision(header::header(plan, &translation, &state)),
+            source: plan.in_precision(source::source(plan, &translation, &functions)),
+            parameters: parameters::source(plan).map(|source| plan.in_precision(source)),
+            translation,
+        })
     }
 }
 
@@ -142,42 +229,14 @@ pub fn export(
     most: usize,
     guests: &[Guest],
 ) -> Result<Package, ExportError> {
-    let system = ControlSystem::new(scenario).map_err(|error| ExportError::Vectors(error.into()))?;
-    let vectors: Vec<CallVector> = vectors::record(scenario, most).map_err(ExportError::Vectors)?;
-    let calls = system.calls();
-    let excluded_parts = system.excluded_parts(scenario);
-    let effective = scenario.to_toml();
-    let digest =
-        Sha256::digest(&effective).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
-    let tuned = parameters::parameters(&system);
-    let plan = Plan {
-        prefix,
-        origin,
-        digest: &digest,
-        system: &system,
-        calls: &calls,
-        excluded_parts: &excluded_parts,
-        parameters: &tuned,
-        run_start: start_values::find(&calls, &vectors),
-        mode: None,
-        precision: scenario.flight_precision,
-    };
-    let in_precision =
-        |text: String| if scenario.flight_precision.is_double() { text } else { in_single(&text) };
-    let (functions, state) = match &system {
-        ControlSystem::Modes(own) => (modes::functions(&plan, own), modes::state(&plan, own)),
-        _ => (calls::functions(&plan), header::state(&plan)),
-    };
-    let functions = in_precision(functions);
-    let sources = sources_in(scenario.flight_precision);
-    let roots = source::roots(&system, &functions);
-    let choices = choices::constant_choices(&system);
-    let translation =
-        translate_pruned(&sources, &roots, prefix, &choices).map_err(ExportError::Translation)?;
-    let accuracy = accuracy::output_accuracies(scenario, &vectors);
-    let hashes: Vec<(u64, u64)> = HASHED_CYCLES.into_iter().zip(self_tests(&system, HASHED_CYCLES)).collect();
-    let header = in_precision(header::header(&plan, &translation, &state));
-    let source = in_precision(source::source(&plan, &translation, &functions));
+    let prepared = Prepared::new(scenario, most)?;
+    let plan = prepared.plan(origin, prefix);
+    let Code { header, source, parameters, translation } = Code::new(&plan)?;
+    let vectors = &prepared.vectors;
+    let accuracy =
+        accuracy::output_accuracies(scenario, vectors).map_err(|fault| ExportError::Vectors(fault.into()))?;
+    let hashes: Vec<(u64, u64)> =
+        HASHED_CYCLES.into_iter().zip(self_tests(&prepared.system, HASHED_CYCLES)).collect();
     let mut files: Vec<PackageFile> =
         guests.iter().flat_map(|guest| guest.files(&plan, &header, &source)).collect();
     files.extend([
@@ -185,20 +244,57 @@ pub fn export(
         text(format!("{prefix}.c"), source),
         text("driver.c".to_owned(), driver::driver(&plan, &translation.guards)),
         text(format!("{prefix}.icd.json"), interface::interface(&plan, scenario)),
-        text("scenario.toml".to_owned(), effective),
-        text("main_loop.c".to_owned(), in_precision(main_loop::main_loop(&plan))),
+        text("main_loop.c".to_owned(), plan.in_precision(main_loop::main_loop(&plan))),
         text("Makefile".to_owned(), static_files::makefile(prefix, &hashes)),
         text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len(), &accuracy)),
-        PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(&vectors) },
+        PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(vectors) },
     ]);
-    files.extend(
-        parameters::source(&plan).map(|source| text(format!("{prefix}_parameters.c"), in_precision(source))),
-    );
+    files.extend(parameters.map(|source| text(format!("{prefix}_parameters.c"), source)));
     files
         .extend(static_files::board_files().map(|(path, content)| text(path.to_owned(), content.to_owned())));
+    let Prepared { calls, vectors, excluded_parts, effective, .. } = prepared;
+    files.push(text("scenario.toml".to_owned(), effective));
     files.sort_by(|a, b| a.path.cmp(&b.path));
-    let vectors = vectors.len();
-    Ok(Package { files, calls, vectors, excluded_parts, accuracy })
+    Ok(Package { files, calls, vectors: vectors.len(), excluded_parts, accuracy })
+}
+
+/// Control system as C alone, for a program around it that another part of flexsc writes.
+#[derive(Clone, Debug)]
+pub struct ControlSources {
+    /// Header and sources, the header first.
+    pub files: Vec<PackageFile>,
+    /// Control system at the start of a run.
+    pub system: ControlSystem,
+    /// Functions.
+    pub calls: Vec<CallLayout>,
+    /// Numbers that are tuned in flight.
+    pub parameters: Vec<FlightParameter>,
+    /// Words of the inputs with which estimators start in run 0; none without an estimator.
+    pub run_start: Vec<u64>,
+    /// True if the functions read the time.
+    pub has_time: bool,
+    /// Scenario with all defaults, whose hash is in the header.
+    pub effective: String,
+}
+
+/// Writes the control system of a scenario as C alone, with names that begin with `prefix`.
+///
+/// # Errors
+/// An [`ExportError`] if a part of the control system has no plain code, or if its run fails.
+pub fn control_sources(
+    scenario: &Scenario,
+    origin: ExportOrigin<'_>,
+    prefix: &str,
+) -> Result<ControlSources, ExportError> {
+    // The start of the estimators is among the first calls.
+    let prepared = Prepared::new(scenario, 64)?;
+    let plan = prepared.plan(origin, prefix);
+    let Code { header, source, parameters, .. } = Code::new(&plan)?;
+    let mut files = vec![text(format!("{prefix}.h"), header), text(format!("{prefix}.c"), source)];
+    files.extend(parameters.map(|source| text(format!("{prefix}_parameters.c"), source)));
+    let (has_time, run_start) = (signature::has_time(&plan), plan.run_start.unwrap_or_default().to_vec());
+    let Prepared { system, calls, parameters, effective, .. } = prepared;
+    Ok(ControlSources { files, system, calls, parameters, run_start, has_time, effective })
 }
 
 fn text(path: String, content: String) -> PackageFile {

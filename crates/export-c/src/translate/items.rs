@@ -150,7 +150,7 @@ impl<'a> Program<'a> {
             }
             syn::Item::Fn(item) => {
                 let mut block = *item.block;
-                self.choices.prune(&mut block);
+                self.choices.prune(None, &item.sig, &mut block);
                 let content = ItemContent::Function { signature: Box::new(item.sig), block };
                 self.add_function(file, None, &item.attrs, content)
             }
@@ -217,7 +217,7 @@ impl<'a> Program<'a> {
                 }
                 ImplItem::Fn(item) => {
                     let mut block = item.block;
-                    self.choices.prune_method(&self.items[owner].name, &mut block);
+                    self.choices.prune(Some(&self.items[owner].name), &item.sig, &mut block);
                     let content = ItemContent::Function { signature: Box::new(item.sig), block };
                     self.add_function(file, Some(owner), &item.attrs, content)?;
                 }

@@ -4,27 +4,27 @@
 use std::collections::BTreeMap;
 
 use proc_macro2::TokenStream;
-use syn::{BinOp, Block, Expr, ExprBlock, ExprIf, Lit, Member, Stmt, UnOp};
+use syn::{BinOp, Block, Expr, ExprBlock, ExprIf, FnArg, Lit, Member, Pat, Signature, Stmt, Type, UnOp};
 
 use super::paths::words;
 
 /// Choices that are constant in a control system.
 #[derive(Clone, Debug, Default)]
 pub struct ConstantChoices {
-    /// Members and parameters that are true or false, by their names.
-    pub flags: BTreeMap<&'static str, bool>,
+    /// Members of structs and parameters of functions that are true or false, by the struct or function and their names.
+    pub flags: BTreeMap<(&'static str, &'static str), bool>,
     /// Variant of all values of an enum, by the name of the enum.
     pub variants: BTreeMap<&'static str, String>,
 }
 
 impl ConstantChoices {
-    /// Adds a choice that is true or false, if all values are equal; there may be none.
-    pub fn flag(&mut self, name: &'static str, values: impl IntoIterator<Item = bool>) {
+    /// Adds a member of a struct, or a parameter of a function, that is true or false, if all values are equal; there may be none.
+    pub fn flag(&mut self, place: (&'static str, &'static str), values: impl IntoIterator<Item = bool>) {
         let mut values = values.into_iter();
         if let Some(first) = values.next()
             && values.all(|value| value == first)
         {
-            self.flags.insert(name, first);
+            self.flags.insert(place, first);
         }
     }
 
@@ -42,20 +42,48 @@ impl ConstantChoices {
         }
     }
 
-    /// Removes the branches of a function of a type that are never taken.
-    pub(super) fn prune_method(&self, owner: &str, block: &mut Block) {
-        let mut own = self.clone();
-        if let Some(variant) = self.variants.get(owner) {
-            own.variants.insert("Self", variant.clone());
-        }
-        own.prune(block);
-    }
-
-    /// Removes the branches of a block that are never taken; of what follows a `return` for certain, nothing is left.
-    pub(super) fn prune(&self, block: &mut Block) {
+    /// Removes the branches of a function that are never taken; `owner` is the type of a method.
+    pub(super) fn prune(&self, owner: Option<&str>, signature: &Signature, block: &mut Block) {
         if self.flags.is_empty() && self.variants.is_empty() {
             return;
         }
+        let types = signature.inputs.iter().filter_map(|input| match input {
+            FnArg::Receiver(_) => Some(("self".to_owned(), owner?.to_owned())),
+            FnArg::Typed(typed) => match &*typed.pat {
+                Pat::Ident(name) => Some((name.ident.to_string(), type_name(&typed.ty, owner)?)),
+                _ => None,
+            },
+        });
+        let types = types.collect();
+        Pruner { choices: self, owner, function: signature.ident.to_string(), types }.prune(block);
+    }
+}
+
+/// Returns the last word of the path of a type or of what it refers to; that of `Self` is the owner.
+fn type_name(written: &Type, owner: Option<&str>) -> Option<String> {
+    match written {
+        Type::Reference(reference) => type_name(&reference.elem, owner),
+        Type::Path(path) => {
+            let name = path.path.segments.last()?.ident.to_string();
+            if name == "Self" { owner.map(str::to_owned) } else { Some(name) }
+        }
+        _ => None,
+    }
+}
+
+/// Pruning of a function.
+struct Pruner<'a> {
+    choices: &'a ConstantChoices,
+    /// Type of a method.
+    owner: Option<&'a str>,
+    function: String,
+    /// Types of the parameters, by their names.
+    types: BTreeMap<String, String>,
+}
+
+impl Pruner<'_> {
+    /// Removes the branches of a block that are never taken; of what follows a `return` for certain, nothing is left.
+    fn prune(&self, block: &mut Block) {
         let mut kept: Vec<Stmt> = Vec::new();
         for mut statement in std::mem::take(&mut block.stmts) {
             match &mut statement {
@@ -142,7 +170,8 @@ impl ConstantChoices {
     /// Returns true if a path `Enum::Variant` names the one variant of its enum; `None` if there are several.
     fn variant_is(&self, path: &[String]) -> Option<bool> {
         let [kind, variant] = path else { return None };
-        Some(self.variants.get(kind.as_str())? == variant)
+        let kind = if kind == "Self" { self.owner? } else { kind.as_str() };
+        Some(self.choices.variants.get(kind)? == variant)
     }
 
     /// Returns the value of a condition, if it is constant.
@@ -172,15 +201,24 @@ impl ConstantChoices {
                 _ => None,
             },
             Expr::Field(field) => match &field.member {
-                Member::Named(name) => self.flags.get(name.to_string().as_str()).copied(),
+                Member::Named(name) => match &*field.base {
+                    Expr::Path(base) => {
+                        let base = self.types.get(&base.path.get_ident()?.to_string())?;
+                        self.flag(base, &name.to_string())
+                    }
+                    _ => None,
+                },
                 Member::Unnamed(_) => None,
             },
-            Expr::Path(path) => {
-                let name = path.path.get_ident()?.to_string();
-                self.flags.get(name.as_str()).copied()
-            }
+            Expr::Path(path) => self.flag(&self.function, &path.path.get_ident()?.to_string()),
             _ => None,
         }
+    }
+
+    /// Returns the value of a member of a struct, or of a parameter of a function, if it is constant.
+    fn flag(&self, owner: &str, name: &str) -> Option<bool> {
+        let mut flags = self.choices.flags.iter();
+        flags.find(|((of, own), _)| *of == owner && *own == name).map(|(_, value)| *value)
     }
 
     /// Returns whether a member has a variant, if that is constant.
@@ -210,4 +248,28 @@ fn is_nothing(statement: &Stmt) -> bool {
 /// True if a block returns for certain.
 fn returns(block: &Block) -> bool {
     matches!(block.stmts.last(), Some(Stmt::Expr(Expr::Return(_), _)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_are_those_of_their_struct_or_function() {
+        let mut choices = ConstantChoices::default();
+        choices.flag(("Law", "has_limit"), [true, true]);
+        choices.flag(("allocate", "is_least"), [false]);
+        let pruned = |owner: Option<&str>, text: &str| {
+            let mut function: syn::ItemFn = syn::parse_str(text).expect("a function");
+            choices.prune(owner, &function.sig, &mut function.block);
+            !function.block.stmts.iter().any(|statement| matches!(statement, Stmt::Expr(Expr::If(_), _)))
+        };
+        let body = "-> f64 { if self.has_limit { return 1.0; } 2.0 }";
+        assert!(pruned(Some("Law"), &format!("fn step(&self) {body}")));
+        assert!(!pruned(Some("Other"), &format!("fn step(&self) {body}")));
+        assert!(pruned(None, "fn step(law: &Law) -> f64 { if law.has_limit { return 1.0; } 2.0 }"));
+        assert!(!pruned(None, "fn step(law: &Other) -> f64 { if law.has_limit { return 1.0; } 2.0 }"));
+        assert!(pruned(None, "fn allocate(is_least: bool) -> f64 { if is_least { return 1.0; } 2.0 }"));
+        assert!(!pruned(None, "fn other(is_least: bool) -> f64 { if is_least { return 1.0; } 2.0 }"));
+    }
 }

@@ -886,6 +886,7 @@ class Scenario:
         fmi: Literal[2, 3] = 3,
         part: Literal["loop", "plant", "controller"] = "loop",
         library: str | os.PathLike[str] | None = None,
+        sources: bool = False,
     ) -> int:
         """Write the scenario as an FMU, which other simulators import, and return the number of bytes.
 
@@ -895,6 +896,8 @@ class Scenario:
             part: `loop`, the closed loop; `plant`, the spacecraft with its sensors and actuators, whose
                 commands are inputs; or `controller`, the laws, whose estimates and references are inputs.
             library: The library of FMUs, or a ZIP archive of it; if omitted, that of this package.
+            sources: With the part `controller`: its exported C, with attitude filter and modes, in place of a
+                library, for any platform.
 
         >>> import flexsc, pathlib, tempfile
         >>> scenario = flexsc.Scenario.example("relay-fixed")
@@ -907,8 +910,15 @@ class Scenario:
             ValueError: The scenario has parts written in Python, its laws cannot run alone as a `controller`,
                 or the library is not there.
         """
+        from flexsc import _command
         from flexsc._fmi_library import fmi_library
 
+        if sources:
+            if library is not None:
+                raise ValueError("library: an FMU with sources has none")
+            options = ["--part", part, "--fmi", str(fmi), "--sources"]
+            _command.run(self, "export-fmu", path, options, force=True)
+            return os.stat(path).st_size
         return engine.export_fmu(self._native, path, fmi, part, library or fmi_library())
 
     def _simulate(
