@@ -6,7 +6,6 @@ use flexsc_core::control::estimator::attitude::{FilterSetup, SensorRole};
 use flexsc_core::control::sensor::SensorKind;
 use flexsc_core::numerics::flight_types::{to_matrix3, to_matrix6x3};
 use flexsc_core::numerics::time::Span;
-use flexsc_core::record::AttitudeEstimate;
 use flexsc_flight::attitude_estimator::AttitudeEstimator;
 use flexsc_flight::attitude_filter::GyroNoise;
 use flexsc_flight::attitude_gate::AttitudeGate;
@@ -242,18 +241,16 @@ impl AttitudeUnit {
                     precision.take_observation(estimator, sensor, times, &observation, entries, observations);
             }
         }
-        let (attitude, rate) = (self.attitude(now), self.rate());
-        let Self { estimator, entries, precision, .. } = &*self;
-        let mut outputs = quaternion_words(&attitude).to_vec();
-        outputs.extend(vector_words(&rate));
+        let own = precision.output(estimator, now, entries);
+        let counters = &estimator.history.refused;
+        let mut outputs = quaternion_words(&own.attitude).to_vec();
+        outputs.extend(vector_words(&own.rate));
         outputs.extend(statuses.into_iter().map(|status| status as u64));
-        let history = &estimator.history;
-        outputs.extend([history.refusals(), history.refused[0], self.age(now).to_bits()]);
-        outputs.extend(vector_words(&estimator.correction.innovation));
-        let nis = estimator.correction.nis / AttitudeEstimate::MEASUREMENTS;
-        outputs.push(precision.rounded(nis).to_bits());
-        outputs.extend(vector_words(&precision.deviation(estimator, entries)));
-        outputs.extend((1..).zip(&self.correctors).map(|(sensor, _)| history.refused[counter(sensor)]));
+        outputs.extend([own.refused, counters[0], own.age.to_bits()]);
+        outputs.extend(vector_words(&own.innovation));
+        outputs.push(own.nis.to_bits());
+        outputs.extend(vector_words(&own.deviation));
+        outputs.extend((1..).zip(&self.correctors).map(|(sensor, _)| counters[counter(sensor)]));
         outputs
     }
 

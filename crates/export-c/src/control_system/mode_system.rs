@@ -8,7 +8,7 @@ use flexsc_core::control::law::LawKind;
 use flexsc_core::control::operation::ModeTables;
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_flight::mode_supervisor::{ModeSupervisor, ModeTest};
-use flexsc_flight::quaternion::Quaternion;
+use flexsc_flight::supervised_mode::TargetChange;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
 use flexsc_flight_precision::Precision;
@@ -137,8 +137,8 @@ pub struct ModeSystem {
     pub inputs: ModeInputs,
     /// True if each mode has its target: at a change the angles move from one to the other.
     pub moves_angles: bool,
-    /// Angle from the target of the mode before, and that target, from a change on to the next step.
-    moved: Option<(Vector3, Quaternion)>,
+    /// Change of the target at that of the mode.
+    change: TargetChange,
     /// Inputs and outputs of a step.
     layout: Arc<StepLayout>,
     precision: Precision,
@@ -194,7 +194,7 @@ impl ModeSystem {
             stored,
             inputs,
             moves_angles,
-            moved: None,
+            change: TargetChange::NONE,
             layout,
             precision: scenario.flight_precision,
         })
@@ -317,7 +317,7 @@ impl ModeSystem {
         let mode = if mode < self.modes.len() { mode } else { 0 };
         self.supervisor.enter(now, mode, &mut self.tables.modes, &mut self.tables.exits);
         self.start_laws();
-        self.moved = None;
+        self.change.is_pending = false;
         vec![mode as u64]
     }
 
@@ -338,8 +338,7 @@ impl ModeSystem {
             self.start_laws();
             if let Some(unit) = self.estimator.as_ref().filter(|_| self.moves_angles) {
                 let target = ModeInputs::target(inputs);
-                let angle = unit.angle_from(&target, now);
-                self.moved = Some((angle, target));
+                self.change.begin(&target, &unit.angle_from(&target, now));
             }
         }
         let active = self.supervisor.active;
@@ -364,11 +363,7 @@ impl ModeSystem {
         let mut motion = None;
         if let Some(unit) = &self.estimator {
             let target = quaternion(&mut WordReader::new(inputs));
-            let mut angle = unit.angle_from(&target, now);
-            // At a change the engine moves the angles from one target to the other.
-            if let Some((before, from)) = self.moved.take() {
-                angle = self.precision.sum(&before, &self.precision.rotation(&target, &from));
-            }
+            let angle = self.precision.angle_from(&mut self.change, &target, &unit.attitude(now));
             let rate = unit.rate();
             let words = |values: [f64; 3]| values.map(f64::to_bits);
             motion = Some([words([angle.x, angle.y, angle.z]), words([rate.x, rate.y, rate.z])]);

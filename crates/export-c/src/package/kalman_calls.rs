@@ -2,18 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::Plan;
 use super::initialiser::initialiser;
 use super::signature::{about, signature};
+use super::{Plan, shim};
 use crate::control_system::KalmanUnit;
-
-/// Functions of the flight code that the exported functions call.
-pub const ROOTS: [&str; 4] = [
-    "kalman_axis::KalmanAxis::new",
-    "kalman_axis::KalmanAxis::take",
-    "kalman_axis::KalmanAxis::shift",
-    "kalman_axis::KalmanAxis::has_lost_lock",
-];
 
 /// Writes the members of the state.
 pub fn members(plan: &Plan<'_>, unit: &KalmanUnit, text: &mut String) {
@@ -36,23 +28,11 @@ pub fn members(plan: &Plan<'_>, unit: &KalmanUnit, text: &mut String) {
 /// Writes the models, and the function that starts the filters with means, which `init` calls too.
 pub fn start(plan: &Plan<'_>, unit: &KalmanUnit, text: &mut String) {
     let prefix = plan.prefix;
-    let list = |numbers: &[f64]| {
-        let rows = numbers.chunks(4).map(|row| {
-            let entries: Vec<String> = row.iter().map(|entry| initialiser(entry, prefix)).collect();
-            format!("    {}", entries.join(", "))
-        });
-        rows.collect::<Vec<_>>().join(",\n")
-    };
     for (axis, filter) in unit.axes.iter().enumerate() {
-        let _ = writeln!(
-            text,
-            "/* Model of a filter: transition matrix over a period, change of the state by a unit moment, covariance of the noise. */\n\
-             static const double model_{axis}[{}] = {{\n{}\n}};\n\n/* Variances at the start. */\nstatic const double variances_{axis}[{}] = {{\n{}\n}};\n",
-            filter.model.len(),
-            list(&filter.model),
-            filter.variances.len(),
-            list(&filter.variances),
-        );
+        let about = "Model of a filter: transition matrix over a period, change of the state by a unit moment, covariance of the noise.";
+        *text += &shim::numbers(plan, about, &format!("model_{axis}"), &filter.model, 4);
+        let name = format!("variances_{axis}");
+        *text += &shim::numbers(plan, "Variances at the start.", &name, &filter.variances, 4);
     }
     let _ = writeln!(
         text,

@@ -13,15 +13,18 @@ mod header;
 mod initialiser;
 mod interface;
 mod kalman_calls;
+mod law_calls;
 mod main_loop;
 mod modes;
 mod momentum_calls;
 mod parameters;
 mod rate_calls;
+mod shim;
 mod signature;
 mod source;
 mod start_values;
 mod static_files;
+mod supervisor_calls;
 
 use flexsc_core::Scenario;
 use flexsc_flight_precision::Precision;
@@ -30,7 +33,7 @@ use sha2::{Digest, Sha256};
 use crate::control_system::{CallLayout, ControlSystem, ExcludedPart};
 use crate::flight_sources::sources_in;
 use crate::self_test::self_tests;
-use crate::translate::{TranslationError, in_single, translate_pruned};
+use crate::translate::{TranslationError, in_single, translate_called};
 use crate::vectors::{self, CallVector, VectorError};
 
 pub use accuracy::OutputAccuracy;
@@ -108,8 +111,6 @@ struct Plan<'a> {
     parameters: &'a [parameters::FlightParameter],
     /// Inputs with which estimators start in run 0; `None` without an estimator, or without vectors.
     run_start: Option<&'a [u64]>,
-    /// Name of the mode whose laws are written; `None` of the whole control system.
-    mode: Option<&'a str>,
     precision: Precision,
 }
 
@@ -159,24 +160,18 @@ pub fn export(
         excluded_parts: &excluded_parts,
         parameters: &tuned,
         run_start: start_values::find(&calls, &vectors),
-        mode: None,
         precision: scenario.flight_precision,
     };
     let in_precision =
         |text: String| if scenario.flight_precision.is_double() { text } else { in_single(&text) };
-    let (functions, state) = match &system {
-        ControlSystem::Modes(own) => (modes::functions(&plan, own), modes::state(&plan, own)),
-        _ => (calls::functions(&plan), header::state(&plan)),
-    };
-    let functions = in_precision(functions);
+    let functions = in_precision(calls::functions(&plan));
     let sources = sources_in(scenario.flight_precision);
-    let roots = source::roots(&system, &functions);
     let choices = choices::constant_choices(&system);
     let translation =
-        translate_pruned(&sources, &roots, prefix, &choices).map_err(ExportError::Translation)?;
+        translate_called(&sources, &functions, prefix, &choices).map_err(ExportError::Translation)?;
     let accuracy = accuracy::output_accuracies(scenario, &vectors);
     let hashes: Vec<(u64, u64)> = HASHED_CYCLES.into_iter().zip(self_tests(&system, HASHED_CYCLES)).collect();
-    let header = in_precision(header::header(&plan, &translation, &state));
+    let header = in_precision(header::header(&plan, &translation));
     let source = in_precision(source::source(&plan, &translation, &functions));
     let mut files: Vec<PackageFile> =
         guests.iter().flat_map(|guest| guest.files(&plan, &header, &source)).collect();

@@ -68,17 +68,12 @@ fn law_parameter(mode: Option<&str>, axis: usize, axes: usize, member: &str) -> 
     if axes == 1 { format!("{mode}{member}") } else { format!("{mode}{}_{member}", AXES[axis]) }
 }
 
-/// Returns true if laws have parameters, which their start then takes.
-pub fn has_law_parameters(laws: &SampledLaws) -> bool {
-    (0..laws.axis_count()).any(|axis| !law_members(&laws.laws, axis).is_empty())
-}
-
-/// Returns the initialiser of the law about an axis, with `parameters` in place of the defaults.
-pub fn tuned(plan: &Plan<'_>, laws: &SampledLaws, axis: usize, initialiser: String) -> String {
+/// Returns the initialiser of the law about an axis, of a mode or of no mode, with parameters in place of the defaults.
+pub fn tuned(laws: &SampledLaws, mode: Option<&str>, axis: usize, initialiser: String) -> String {
     let members = law_members(&laws.laws, axis);
     members.iter().fold(initialiser, |text, (member, ..)| {
-        let name = law_parameter(plan.mode, axis, laws.axis_count(), member);
-        replaced(&text, member, &format!("parameters->{name}"))
+        let name = law_parameter(mode, axis, laws.axis_count(), member);
+        replaced(&text, member, &format!("state->parameters.{name}"))
     })
 }
 
@@ -298,15 +293,10 @@ pub fn defaults(plan: &Plan<'_>, text: &mut String) {
     );
 }
 
-/// Writes the statement of `init` that takes the defaults; `is_read` is true if it reads parameters too.
-pub fn init(plan: &Plan<'_>, is_read: bool, text: &mut String) {
-    if plan.parameters.is_empty() || plan.mode.is_some() {
-        return;
-    }
-    let prefix = plan.prefix;
-    let _ = writeln!(text, "    state->parameters = {prefix}_default_parameters;");
-    if is_read {
-        let _ = writeln!(text, "    const {prefix}_parameters *parameters = &state->parameters;");
+/// Writes the statement of `init` that takes the defaults.
+pub fn init(plan: &Plan<'_>, text: &mut String) {
+    if !plan.parameters.is_empty() {
+        let _ = writeln!(text, "    state->parameters = {}_default_parameters;", plan.prefix);
     }
 }
 
