@@ -5,7 +5,7 @@ use flexsc_core::control::estimator::{EstimateOutputs, LinearFilter, linear_filt
 use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::numerics::random::Seed;
 use flexsc_flight::kalman::KalmanSample;
-use flexsc_flight::kalman_axis::{KalmanAxis, KalmanFeed};
+use flexsc_flight::kalman_axis::{KalmanAxis, KalmanFeed, reset};
 
 use super::{CallLayout, Channel, WordReader};
 
@@ -78,14 +78,10 @@ impl AxisFilter {
     }
 
     /// Starts the filter with a mean.
-    fn start(&mut self, mean: Vec<f64>) {
+    fn start(&mut self, mean: &[f64]) {
         let KalmanAxis { feed, motion, mode, .. } = self.estimate;
         self.estimate = KalmanAxis::new(feed, motion, mode, self.measurements);
-        self.covariance.fill(0.0);
-        for (index, variance) in self.variances.iter().enumerate() {
-            self.covariance[index * (mean.len() + 1)] = *variance;
-        }
-        self.mean = mean;
+        reset(mean, 0, &self.variances, &mut self.mean, &mut self.covariance);
     }
 }
 
@@ -158,7 +154,7 @@ impl KalmanUnit {
             0 => {
                 self.axes.iter_mut().for_each(|axis| {
                     let mean = words.list(axis.mean.len());
-                    axis.start(mean);
+                    axis.start(&mean);
                 });
                 self.axes.iter().map(|axis| axis.mean[0].to_bits()).collect()
             }

@@ -69,15 +69,8 @@ impl Relays {
             return self.axes.iter_mut().map(|relay| relay.step(now, words.real()).to_bits()).collect();
         }
         let (axis, event, angle) = (words.word() as usize, words.word(), words.real());
-        let event = match event {
-            0 => RelayEvent::Start,
-            1 => RelayEvent::FirstGuard,
-            2 => RelayEvent::SecondGuard,
-            _ => RelayEvent::Timeout,
-        };
         let Some(relay) = self.axes.get_mut(axis) else { return Vec::new() };
-        relay.has_started = true;
-        relay.command = relay.law.decide(now, event, angle);
+        relay.decide(now, RelayEvent::from_number(event as i64), angle);
         output_words(&relay.command)
     }
 }

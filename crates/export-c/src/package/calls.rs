@@ -47,17 +47,23 @@ fn of_relays(plan: &Plan<'_>, relays: &Relays, text: &mut String) {
     };
     let _ = writeln!(
         text,
-        "{}\n{{\n    {prefix}_polled_relay *relay = {pointer};\n    {prefix}_relay_event event = {upper}_RELAY_EVENT_TIMEOUT;\n    \
-         if (input->event == 0) {{\n        event = {upper}_RELAY_EVENT_START;\n    }} else if (input->event == 1) {{\n        \
-         event = {upper}_RELAY_EVENT_FIRST_GUARD;\n    }} else if (input->event == 2) {{\n        \
-         event = {upper}_RELAY_EVENT_SECOND_GUARD;\n    }}\n    relay->has_started = true;\n    \
-         relay->command = relay_law_decide(&relay->law, now, event, input->angle);\n    \
-         output->torque = relay->command.torque;\n    output->has_timeout = relay->command.has_timeout;\n    \
-         output->until_whole = relay->command.until.whole;\n    output->until_part = relay->command.until.part;\n    \
-         output->guard_count = (int64_t)relay->command.guard_count;\n    for (size_t guard = 0; guard < 2; ++guard) {{\n        \
-         output->guard_is_lower[guard] = relay->command.guards[guard].side == {upper}_GUARD_DIRECTION_AT_MOST;\n        \
-         output->guard_level[guard] = relay->command.guards[guard].level;\n    }}\n}}\n",
+        "{}\n{{\n    {prefix}_polled_relay *relay = {pointer};\n    const {prefix}_relay_event event = relay_event_from_number(input->event);\n    \
+         polled_relay_decide(relay, now, event, input->angle);",
         signature(plan, &plan.calls[0])
+    );
+    for (output, value) in [
+        ("torque", "torque"),
+        ("has_timeout", "has_timeout"),
+        ("until_whole", "until.whole"),
+        ("until_part", "until.part"),
+    ] {
+        let _ = writeln!(text, "    output->{output} = relay->command.{value};");
+    }
+    let _ = writeln!(
+        text,
+        "    output->guard_count = (int64_t)relay->command.guard_count;\n    for (size_t guard = 0; guard < 2; ++guard) {{\n        \
+         output->guard_is_lower[guard] = relay->command.guards[guard].side == {upper}_GUARD_DIRECTION_AT_MOST;\n        \
+         output->guard_level[guard] = relay->command.guards[guard].level;\n    }}\n}}\n"
     );
     let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[1]));
     for axis in 0..axes {

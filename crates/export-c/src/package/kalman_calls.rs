@@ -38,21 +38,19 @@ pub fn start(plan: &Plan<'_>, unit: &KalmanUnit, text: &mut String) {
         text,
         "/* Starts the filters with the mean of their states. */\nstatic void start_filters({prefix}_state *state, const double *mean)\n{{"
     );
-    let mut first = 0;
+    let (mut first, states) = (0, unit.axes.iter().map(|axis| axis.mean.len()).sum::<usize>());
     for (axis, filter) in unit.axes.iter().enumerate() {
         let (order, estimate) = (filter.mean.len(), about("estimate", axis, unit.axes.len()));
         let feed = format!("{prefix}_kalman_feed_{}", super::snake(&format!("{:?}", filter.estimate.feed)));
-        let place = if first == 0 { "index".to_owned() } else { format!("{first} + index") };
         let _ = writeln!(
             text,
-            "    state->{estimate} = kalman_axis_new({}, {}, {}, {});\n    memset(state->covariance_{axis}, 0, sizeof state->covariance_{axis});\n    \
-             for (size_t index = 0; index < {order}; ++index) {{\n        state->mean_{axis}[index] = mean[{place}];\n        \
-             state->covariance_{axis}[index * {}] = variances_{axis}[index];\n    }}",
+            "    state->{estimate} = kalman_axis_new({}, {}, {}, {});\n    \
+             kalman_axis_reset(mean, {states}, {first}, variances_{axis}, {order}, state->mean_{axis}, {order}, state->covariance_{axis}, {});",
             feed.to_uppercase(),
             filter.estimate.motion,
             filter.estimate.mode,
             filter.measurements,
-            order + 1,
+            order * order,
         );
         first += order;
     }
