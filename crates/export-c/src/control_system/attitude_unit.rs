@@ -134,12 +134,13 @@ impl AttitudeUnit {
     pub(super) fn calls(&self) -> [CallLayout; 2] {
         let attitude = || Channel::unit("attitude", "Estimated attitude: quaternion w, x, y, z", 4);
         let start = CallLayout {
-            name: "start",
-            about: "Starts the attitude filter at this time with an attitude and a gyro bias; at any time, and again after a fault.",
             is_start: true,
-            period: None,
             inputs: vec![attitude(), Channel::real("bias", "Estimated gyro bias (rad/s)", 3, 1e-5)],
             outputs: vec![attitude()],
+            ..CallLayout::new(
+                "start",
+                "Starts the attitude filter at this time with an attitude and a gyro bias; at any time, and again after a fault.",
+            )
         };
         let mut inputs = vec![
             Channel::flag("gyro_is_valid", "True if there is a gyro reading", 1),
@@ -186,14 +187,8 @@ impl AttitudeUnit {
         ]);
         outputs
             .extend(self.correctors.iter().map(|corrector| refused(format!("{}_refused", corrector.name))));
-        let sample = CallLayout {
-            name: "sample",
-            about: "Takes a sample of the sensors.",
-            is_start: false,
-            period: None,
-            inputs,
-            outputs,
-        };
+        let sample =
+            CallLayout { inputs, outputs, ..CallLayout::new("sample", "Takes a sample of the sensors.") };
         [start, sample]
     }
 

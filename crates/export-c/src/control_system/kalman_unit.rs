@@ -106,12 +106,10 @@ impl KalmanUnit {
         let states: usize = self.axes.iter().map(|axis| axis.mean.len()).sum();
         let about = "State of each axis: angle (rad), rate (rad/s), then displacement (rad) and rate (rad/s) of each mode";
         let start = CallLayout {
-            name: "start",
-            about: "Starts the Kalman filters with the mean of their state.",
             is_start: true,
-            period: None,
             inputs: vec![Channel::real("mean", about, states, 1e-3)],
             outputs: vec![angle("Rigid angle about each axis (rad)", 1.0)],
+            ..CallLayout::new("start", "Starts the Kalman filters with the mean of their state.")
         };
         let moment = "Mean torque over inertia about each axis since the sample before (rad/s\u{b2})";
         let mut outputs = vec![
@@ -124,10 +122,6 @@ impl KalmanUnit {
         }
         outputs.push(Channel::flag("has_lost_lock", "True if the filter has lost lock", axes));
         let sample = CallLayout {
-            name: "sample",
-            about: "Takes a sample of the sensors, at their period.",
-            is_start: false,
-            period: None,
             inputs: vec![
                 Channel::real("moment", moment, axes, 1e-4),
                 Channel::flag("is_measured", "True if there is a measurement", 1),
@@ -135,14 +129,15 @@ impl KalmanUnit {
                 Channel::real("rate", "Measured rate about each axis (rad/s)", axes, 1e-3),
             ],
             outputs,
+            ..CallLayout::new("sample", "Takes a sample of the sensors, at their period.")
         };
         let shift = CallLayout {
-            name: "shift",
-            about: "Shifts the angles when a new target begins, before a sample or step of that time.",
-            is_start: false,
-            period: None,
             inputs: vec![Channel::real("shift", "Change of the angle about each axis (rad)", axes, 1e-3)],
             outputs: vec![angle("Estimated angle about each axis (rad)", 1.0)],
+            ..CallLayout::new(
+                "shift",
+                "Shifts the angles when a new target begins, before a sample or step of that time.",
+            )
         };
         if axes == 3 { vec![start, sample, shift] } else { vec![start, sample] }
     }

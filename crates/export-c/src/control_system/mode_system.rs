@@ -130,19 +130,13 @@ impl ModeSystem {
     pub(super) fn calls(&self) -> Vec<CallLayout> {
         let mode = || Channel::integer("mode", "Number of the mode", 1, self.modes.len() as u64);
         let enter = CallLayout {
-            name: "enter",
-            about: "Enters a mode by command, as if a condition had been met.",
             is_start: true,
-            period: None,
             inputs: vec![mode()],
             outputs: vec![mode()],
+            ..CallLayout::new("enter", "Enters a mode by command, as if a condition had been met.")
         };
         let time = |name: &str, about: &str| Channel::integer(name, about, 1, 0);
         let supervise = CallLayout {
-            name: "supervise",
-            about: "Tests the conditions of the present mode, and changes the mode if one is met; it comes before the step of the same time.",
-            is_start: false,
-            period: None,
             inputs: self.inputs.channels.clone(),
             outputs: vec![
                 mode(),
@@ -158,16 +152,20 @@ impl ModeSystem {
                 time("period_whole", "Period of the mode: whole seconds"),
                 time("period_part", "Period of the mode: femtoseconds past them"),
             ],
+            ..CallLayout::new(
+                "supervise",
+                "Tests the conditions of the present mode, and changes the mode if one is met; it comes before the step of the same time.",
+            )
         };
         let mut outputs = self.layout.outputs.clone();
         outputs.push(mode());
         let step = CallLayout {
-            name: "step",
-            about: "Decides by the laws of the present mode on the commands of a period; outputs that these laws do not have are 0.",
-            is_start: false,
-            period: None,
             inputs: self.layout.inputs.clone(),
             outputs,
+            ..CallLayout::new(
+                "step",
+                "Decides by the laws of the present mode on the commands of a period; outputs that these laws do not have are 0.",
+            )
         };
         let estimator = self.estimator.iter().flat_map(AttitudeUnit::calls);
         let field = self.field.iter().map(|_| FieldUnit::layout());

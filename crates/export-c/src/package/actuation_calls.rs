@@ -55,21 +55,13 @@ pub fn init(plan: &Plan<'_>, own: &Actuation, text: &mut String) {
         let _ = writeln!(text, "    state->wheels[{index}] = ({prefix}_allocated_wheel){value};");
     }
     if let Some(unit) = &own.unloading {
-        let zero = shim::vector(plan, ["0.0"; 3]);
-        let members = [("above", "above"), ("below", "below"), ("gain", "gain"), ("most", "torque")];
-        let law = members.into_iter().fold(initialiser(&unit.law, prefix), |law, (member, name)| {
-            let name = format!("unload_{name}");
-            let is_tuned = plan.parameters.iter().any(|own| own.name == name);
-            if is_tuned {
-                parameters::replaced(&law, member, &format!("state->parameters.{name}"))
-            } else {
-                law
-            }
-        });
+        let zero = shim::vector(plan, &["0.0"; 3]);
         let _ = writeln!(
             text,
-            "    state->unloading = ({prefix}_momentum_unloading){law};\n    state->counter = {zero};\n    state->demanded = {zero};"
+            "    state->unloading = ({prefix}_momentum_unloading){};\n    state->counter = {zero};\n    state->demanded = {zero};",
+            initialiser(&unit.law, prefix)
         );
+        parameters::apply(plan, "unloading.", text);
     }
 }
 
@@ -90,14 +82,14 @@ pub fn wheels<T: AsRef<str>>(plan: &Plan<'_>, own: &Actuation, torque: [T; 3], t
     if own.wheels.is_none() {
         return;
     }
-    let demanded = shim::vector(plan, torque);
+    let demanded = shim::vector(plan, &torque);
     text.push_str("\n    /* torques of the wheels, which turn the body the other way */\n");
     if own.unloading.is_some() {
         let _ = writeln!(text, "    state->demanded = {demanded};");
         return drive(plan, own, ["&state->demanded", "&state->counter"], text);
     }
     shim::variable(plan, "Vector3", "demanded", &demanded, text);
-    shim::variable(plan, "Vector3", "counter", &shim::vector(plan, ["0.0"; 3]), text);
+    shim::variable(plan, "Vector3", "counter", &shim::vector(plan, &["0.0"; 3]), text);
     drive(plan, own, ["&demanded", "&counter"], text);
 }
 

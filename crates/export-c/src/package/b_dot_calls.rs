@@ -42,7 +42,7 @@ pub fn moment(plan: &Plan<'_>, laws: &BDotLaws, mode: Option<&str>, text: &mut S
     let values = |part: usize, numbers: [f64; 3]| {
         let value =
             |axis| parameters::expression(plan, &parameters::b_dot_names(mode, axis)[part], numbers[axis]);
-        shim::vector(plan, [0, 1, 2].map(value))
+        shim::vector(plan, &[0, 1, 2].map(value))
     };
     shim::variable(plan, "Vector3", "gains", &values(0, laws.gains), text);
     shim::variable(plan, "Vector3", "limits", &values(1, laws.limits), text);

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::initialiser::initialiser;
-use super::law_calls::LawCalls;
+use super::law_scope::LawCalls;
 use super::signature::{about, signature};
 use super::{
     Plan, actuation_calls, b_dot_calls, estimator_calls, kalman_calls, modes, momentum_calls, parameters,

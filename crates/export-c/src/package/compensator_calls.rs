@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use flexsc_core::control::law::Compensator;
 
 use super::initialiser::initialiser;
-use super::law_calls::LawCalls;
+use super::law_scope::LawCalls;
 use super::shim;
 use super::signature::about;
 
@@ -88,7 +88,7 @@ pub fn step_about(own: &LawCalls<'_>, law: &Compensator, axis: usize, text: &mut
 pub fn step_together(own: &LawCalls<'_>, law: &Compensator, text: &mut String) {
     let error = |name: &str| {
         let axis = |axis| format!("input->reference_{name}[{axis}] - {}", own.estimate(name, axis));
-        shim::vector(own.plan, [0, 1, 2].map(axis))
+        shim::vector(own.plan, &[0, 1, 2].map(axis))
     };
     let speeds = match own.laws.speed_count() {
         0 => "NULL, 0".to_owned(),

@@ -27,26 +27,24 @@ pub fn members(plan: &Plan<'_>, unit: Option<&AttitudeUnit>, text: &mut String) 
 pub fn start(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
     let prefix = plan.prefix;
     let (noise, reach) = (initialiser(&unit.noise, prefix), initialiser(&unit.reach, prefix));
-    let gate = ["nis", "rate"].into_iter().fold(initialiser(&unit.gate, prefix), |text, name| {
-        let value = if name == "nis" { unit.gate.most_nis } else { unit.gate.most_rate };
-        let value = parameters::expression(plan, &format!("gate_{name}"), value);
-        parameters::replaced(&text, &format!("most_{name}"), &value)
-    });
+    let gate = initialiser(&unit.gate, prefix);
     let [angle, bias] = unit.deviations.map(|deviation| initialiser(&deviation, prefix));
     let _ = writeln!(
         text,
         "/* Starts the attitude filter with an attitude and a gyro bias (rad/s). */\nstatic void start_filter({prefix}_state *state, {prefix}_ticks now, {prefix}_quaternion attitude, {prefix}_vector3 bias)\n{{\n    \
          const {prefix}_gyro_noise noise = {noise};\n    const {prefix}_ticks reach = {reach};\n    const {prefix}_attitude_gate gate = {gate};\n    \
          const {prefix}_attitude_bias_filter filter = attitude_bias_filter_new(attitude, bias, {angle}, {bias});\n\n    \
-         state->estimator = attitude_estimator_start(now, filter, noise, reach, gate, state->entries, {});\n}}\n",
+         state->estimator = attitude_estimator_start(now, filter, noise, reach, gate, state->entries, {});",
         unit.entries.len()
     );
+    parameters::apply(plan, "estimator.history.gate.", text);
+    text.push_str("}\n\n");
 }
 
 /// Writes the statement of `init` that starts the filter at the identity.
 pub fn init(plan: &Plan<'_>, now: &str, text: &mut String) {
-    let identity = shim::quaternion(plan, ["1.0", "0.0", "0.0", "0.0"]);
-    let zero = shim::vector(plan, ["0.0"; 3]);
+    let identity = shim::quaternion(plan, &["1.0", "0.0", "0.0", "0.0"]);
+    let zero = shim::vector(plan, &["0.0"; 3]);
     let _ = writeln!(text, "    start_filter(state, {now}, {identity}, {zero});");
 }
 
@@ -98,16 +96,13 @@ pub fn functions(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
     for (sensor, corrector) in (1..).zip(&unit.correctors) {
         let name = &corrector.name;
         let of = |part: &str| format!("input->{name}_{part}");
+        let observed = |member: &str, value: &str| format!("        observation.{member} = {value};\n");
+        let vector = |member: &str, part: &str| observed(member, &shim::vector_from(plan, &of(part)));
         let numbers = if corrector.observation.kind == ObservationKind::Attitude {
-            vec![("attitude", shim::quaternion_from(plan, &of("attitude")))]
+            observed("attitude", &shim::quaternion_from(plan, &of("attitude")))
         } else {
-            let [vector, inertial] = ["vector", "reference"].map(|part| shim::vector_from(plan, &of(part)));
-            vec![("vector", vector), ("inertial", inertial)]
+            vector("vector", "vector") + &vector("inertial", "reference")
         };
-        let numbers: String = numbers
-            .iter()
-            .map(|(member, value)| format!("        observation.{member} = {value};\n"))
-            .collect();
         let _ = writeln!(
             text,
             "    output->{name}_status = 0;\n    if (input->{name}_is_valid) {{\n        const {prefix}_ticks latency = {};\n        {prefix}_attitude_observation observation = {};\n{numbers}        \

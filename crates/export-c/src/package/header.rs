@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::law_calls::LawCalls;
+use super::law_scope::LawCalls;
 use super::signature::about;
 use super::{Plan, actuation_calls, estimator_calls, kalman_calls, modes, parameters, start_values};
 use crate::control_system::{Channel, ControlSystem, NumberKind, Relays};

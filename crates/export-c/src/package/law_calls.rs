@@ -6,32 +6,13 @@ use flexsc_core::numerics::attitude::AXES;
 
 use super::compensator_calls;
 use super::initialiser::initialiser;
+use super::law_scope::LawCalls;
 use super::shim::{self, VECTOR};
 use super::signature::about;
-use super::{Plan, momentum_calls, parameters};
-use crate::control_system::{LawsOfAxes, SampledLaws};
-
-/// Laws of a control system, or of one of its modes.
-pub struct LawCalls<'a> {
-    pub plan: &'a Plan<'a>,
-    pub laws: &'a SampledLaws,
-    /// Name of the mode; `None` of laws that act throughout.
-    pub mode: Option<&'a str>,
-    /// True if the variables `angle` and `rate` are the estimates of an attitude filter.
-    pub has_attitude: bool,
-}
+use super::{momentum_calls, parameters};
+use crate::control_system::LawsOfAxes;
 
 impl LawCalls<'_> {
-    /// Returns a member of the state that is the laws' own.
-    pub fn state(&self, member: &str) -> String {
-        self.mode.map_or_else(|| format!("state->{member}"), |mode| format!("state->law_{mode}.{member}"))
-    }
-
-    /// Returns the name of a constant that is the laws' own.
-    pub fn constant(&self, name: &str) -> String {
-        self.mode.map_or_else(|| name.to_owned(), |mode| format!("{name}_{mode}"))
-    }
-
     /// Writes the members of the state.
     pub fn members(&self, text: &mut String) {
         let axes = self.laws.axis_count();
@@ -87,7 +68,6 @@ impl LawCalls<'_> {
     /// Writes the statements that start the laws without a past.
     pub fn start(&self, text: &mut String) {
         let (plan, axes) = (self.plan, self.laws.axis_count());
-        let tuned = |axis: usize, value: String| parameters::tuned(self.laws, self.mode, axis, value);
         if let (LawsOfAxes::StateSpace(_), Some(mode)) = (&self.laws.laws, self.mode) {
             let _ = writeln!(text, "    memset(&state->law_{mode}, 0, sizeof state->law_{mode});");
         }
@@ -99,14 +79,12 @@ impl LawCalls<'_> {
             match &self.laws.laws {
                 // Their states and commands are zero.
                 LawsOfAxes::StateSpace(_) => {}
-                LawsOfAxes::Pd(own) => {
-                    set(member, "PdLaw", tuned(axis, initialiser(&own[axis].0, plan.prefix)))
-                }
+                LawsOfAxes::Pd(own) => set(member, "PdLaw", initialiser(&own[axis].0, plan.prefix)),
                 LawsOfAxes::PhasePlane(own, _) => {
                     set(member, "PhasePlaneLaw", initialiser(&own[axis], plan.prefix));
                 }
                 LawsOfAxes::Attitude(own) => {
-                    set(member, "AttitudeFeedback", tuned(axis, initialiser(&own[axis].0, plan.prefix)));
+                    set(member, "AttitudeFeedback", initialiser(&own[axis].0, plan.prefix));
                     for (index, filter) in own[axis].1.iter().enumerate() {
                         let value = initialiser(filter, plan.prefix);
                         set(format!("filters[{axis}][{index}]"), "BiquadFilter", value);
@@ -114,6 +92,8 @@ impl LawCalls<'_> {
                 }
             }
         }
+        let law = self.mode.map_or_else(|| "law".to_owned(), |mode| format!("law_{mode}."));
+        parameters::apply(plan, &law, text);
     }
 
     /// Writes the statements that decide: the commands, and the torque of accelerations.
@@ -145,20 +125,6 @@ impl LawCalls<'_> {
         }
         if self.laws.is_acceleration() {
             self.torque(text);
-        }
-    }
-
-    /// Returns the estimated angle or rate about an axis: a component of the filter's estimate, or an input.
-    pub fn estimate(&self, name: &str, axis: usize) -> String {
-        let own = |name: &str| about(name, axis, self.laws.axis_count());
-        if self.has_attitude {
-            format!("{name}.{}", VECTOR[axis])
-        } else if self.laws.filter.is_some() {
-            format!("state->{}.{name}", own("estimate"))
-        } else if self.laws.rate_filter.is_some() && name == "rate" {
-            format!("state->{}.rate", own("rate_filter"))
-        } else {
-            format!("input->{}", own(name))
         }
     }
 
@@ -237,7 +203,10 @@ impl LawCalls<'_> {
     fn torque(&self, text: &mut String) {
         let (plan, laws, axes) = (self.plan, self.laws, self.laws.axis_count());
         let of_axes = |value: &dyn Fn(usize) -> String| {
-            shim::vector(plan, [0, 1, 2].map(|axis| if axis < axes { value(axis) } else { "0.0".to_owned() }))
+            shim::vector(
+                plan,
+                &[0, 1, 2].map(|axis| if axis < axes { value(axis) } else { "0.0".to_owned() }),
+            )
         };
         text.push_str("\n    /* torque of these accelerations */\n");
         let acceleration = of_axes(&|axis| format!("output->{}", about("acceleration", axis, axes)));

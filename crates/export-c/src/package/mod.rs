@@ -14,6 +14,7 @@ mod initialiser;
 mod interface;
 mod kalman_calls;
 mod law_calls;
+mod law_scope;
 mod main_loop;
 mod modes;
 mod momentum_calls;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::law_calls::LawCalls;
+use super::law_scope::LawCalls;
 use super::shim::{self, VECTOR};
 use super::signature::{init_signature, signature};
 use super::{Plan, actuation_calls, b_dot_calls, estimator_calls, parameters, supervisor_calls};
@@ -134,12 +134,9 @@ fn init(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
     if let Some(unit) = &modes.field {
         b_dot_calls::init(plan, unit, text);
     }
-    supervisor_calls::init(modes, text);
+    supervisor_calls::init(plan, modes, text);
     actuation_calls::init(plan, &modes.actuation, text);
-    for (_, name, _) in all_laws(plan, modes) {
-        let _ = writeln!(text, "    start_law_{name}(state);");
-    }
-    text.push_str("}\n\n");
+    text.push_str("    start_laws(state);\n}\n\n");
 }
 
 /// Writes the function that decides by the laws of the present mode.
@@ -161,7 +158,7 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
         text.push_str("    (void)input;\n");
     }
     text.push_str("    memset(output, 0, sizeof *output);\n");
-    let zero = shim::vector(plan, ["0.0"; 3]);
+    let zero = shim::vector(plan, &["0.0"; 3]);
     if modes.actuation.wheels.is_some() {
         let _ = writeln!(text, "    {} torque = {zero};", plan.type_name("Vector3"));
     }
@@ -192,7 +189,7 @@ fn decide(plan: &Plan<'_>, modes: &ModeSystem, mode: &LawsOfMode, text: &mut Str
         b_dot_calls::moment(plan, laws, Some(&mode.name), text);
         text.push_str("    state->moment = moment;\n");
         if modes.actuation.unloads_by_magnetorquers() {
-            let zero = shim::vector(plan, ["0.0"; 3]);
+            let zero = shim::vector(plan, &["0.0"; 3]);
             let _ = writeln!(text, "    state->unloading.is_active = false;\n    state->counter = {zero};");
         }
     }

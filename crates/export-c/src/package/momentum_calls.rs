@@ -18,7 +18,7 @@ pub fn constants(plan: &Plan<'_>, stored: &StoredMomentum, functions: &str) -> S
 /// Writes the declaration of `stored`, the momentum by the input and the variable `rate`, the estimated rate.
 pub fn declaration(plan: &Plan<'_>, stored: &StoredMomentum, rate: &str, text: &mut String) {
     let value = match stored {
-        StoredMomentum::None => shim::vector(plan, ["0.0"; 3]),
+        StoredMomentum::None => shim::vector(plan, &["0.0"; 3]),
         StoredMomentum::Wheels { axes, inertia, .. } => format!(
             "wheel_momentum_stored(wheel_axes, {0}, {1}, input->wheel_speed, {0}, &{rate})",
             axes.len(),

@@ -68,23 +68,6 @@ fn law_parameter(mode: Option<&str>, axis: usize, axes: usize, member: &str) -> 
     if axes == 1 { format!("{mode}{member}") } else { format!("{mode}{}_{member}", AXES[axis]) }
 }
 
-/// Returns the initialiser of the law about an axis, of a mode or of no mode, with parameters in place of the defaults.
-pub fn tuned(laws: &SampledLaws, mode: Option<&str>, axis: usize, initialiser: String) -> String {
-    let members = law_members(&laws.laws, axis);
-    members.iter().fold(initialiser, |text, (member, ..)| {
-        let name = law_parameter(mode, axis, laws.axis_count(), member);
-        replaced(&text, member, &format!("state->parameters.{name}"))
-    })
-}
-
-/// Returns an initialiser with another value of a member.
-pub fn replaced(initialiser: &str, member: &str, value: &str) -> String {
-    let head = format!(".{member} = ");
-    let Some((before, rest)) = initialiser.split_once(&head) else { return initialiser.to_owned() };
-    let end = rest.find([',', ' ']).unwrap_or(rest.len());
-    format!("{before}{head}{value}{}", &rest[end..])
-}
-
 /// Returns the names of the parameters of B-dot laws along an axis: gain, and largest moment.
 pub fn b_dot_names(mode: Option<&str>, axis: usize) -> [String; 2] {
     let mode = mode.map_or_else(String::new, |mode| format!("{mode}_"));
@@ -300,6 +283,15 @@ pub fn init(plan: &Plan<'_>, text: &mut String) {
     }
 }
 
+/// Writes the statements that set the members of the state in use whose names begin with `start` to their parameters.
+pub fn apply(plan: &Plan<'_>, start: &str, text: &mut String) {
+    for own in plan.parameters {
+        if let Some(running) = own.running.as_ref().filter(|running| running.starts_with(start)) {
+            let _ = writeln!(text, "    state->{running} = state->parameters.{};", own.name);
+        }
+    }
+}
+
 /// Returns the expression of a parameter in a function with the state, or the literal of a number that is no parameter.
 pub fn expression(plan: &Plan<'_>, name: &str, value: f64) -> String {
     if plan.parameters.iter().any(|own| own.name == name) {
@@ -359,11 +351,7 @@ pub fn source(plan: &Plan<'_>) -> Option<String> {
         "    return 0;\n}}\n\nint32_t {prefix}_set_parameters({prefix}_state *state, const {prefix}_parameters *parameters)\n{{\n    \
          const int32_t refused = {prefix}_parameters_check(parameters);\n    if (refused != 0) {{\n        return refused;\n    }}\n    state->parameters = *parameters;"
     );
-    for own in plan.parameters {
-        if let Some(running) = &own.running {
-            let _ = writeln!(text, "    state->{running} = parameters->{};", own.name);
-        }
-    }
+    apply(plan, "", &mut text);
     text.push_str("    return 0;\n}\n");
     Some(text)
 }

@@ -17,23 +17,23 @@ fn of_components<T: AsRef<str>>(plan: &Plan<'_>, kind: &str, names: &[&str], val
 }
 
 /// Returns a vector of three values.
-pub fn vector<T: AsRef<str>>(plan: &Plan<'_>, values: [T; 3]) -> String {
-    of_components(plan, "Vector3", &VECTOR, &values)
+pub fn vector<T: AsRef<str>>(plan: &Plan<'_>, values: &[T; 3]) -> String {
+    of_components(plan, "Vector3", &VECTOR, values)
 }
 
 /// Returns a quaternion of four values.
-pub fn quaternion<T: AsRef<str>>(plan: &Plan<'_>, values: [T; 4]) -> String {
-    of_components(plan, "Quaternion", &QUATERNION, &values)
+pub fn quaternion<T: AsRef<str>>(plan: &Plan<'_>, values: &[T; 4]) -> String {
+    of_components(plan, "Quaternion", &QUATERNION, values)
 }
 
 /// Returns the vector of the first three elements of an array.
 pub fn vector_from(plan: &Plan<'_>, array: &str) -> String {
-    vector(plan, [0, 1, 2].map(|index| format!("{array}[{index}]")))
+    vector(plan, &[0, 1, 2].map(|index| format!("{array}[{index}]")))
 }
 
 /// Returns the quaternion of the first four elements of an array.
 pub fn quaternion_from(plan: &Plan<'_>, array: &str) -> String {
-    quaternion(plan, [0, 1, 2, 3].map(|index| format!("{array}[{index}]")))
+    quaternion(plan, &[0, 1, 2, 3].map(|index| format!("{array}[{index}]")))
 }
 
 /// Writes the declaration of a constant variable.
@@ -54,7 +54,7 @@ pub fn list(plan: &Plan<'_>, about: &str, kind: &str, name: &str, values: &[impl
     rows_of(about, &plan.type_name(kind), name, values.len(), &rows)
 }
 
-/// Returns a constant list of numbers, so many on a line.
+/// Returns a constant list of numbers, `on_line` of them on each line.
 pub fn numbers(plan: &Plan<'_>, about: &str, name: &str, values: &[f64], on_line: usize) -> String {
     let row =
         |row: &[f64]| row.iter().map(|value| initialiser(value, plan.prefix)).collect::<Vec<_>>().join(", ");

@@ -44,17 +44,14 @@ pub fn constants(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
 }
 
 /// Writes the statements of `init` that start the supervisor.
-pub fn init(modes: &ModeSystem, text: &mut String) {
+pub fn init(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
     text.push_str("    memcpy(state->modes, mode_list, sizeof state->modes);\n");
     if !modes.tables.exits.is_empty() {
         text.push_str("    memcpy(state->exits, exit_list, sizeof state->exits);\n");
     }
-    let thresholds = parameters::thresholds(modes);
-    if !thresholds.is_empty() {
+    if !parameters::thresholds(modes).is_empty() {
         text.push_str("    memcpy(state->steps, step_list, sizeof state->steps);\n");
-    }
-    for (step, name) in thresholds {
-        let _ = writeln!(text, "    state->steps[{step}].limit = state->parameters.{name};");
+        parameters::apply(plan, "steps[", text);
     }
     let _ = writeln!(text, "    state->supervisor = mode_supervisor_start(now, {});", arguments(modes));
 }

@@ -125,15 +125,6 @@ fn law<'a>(plan: &Plan<'a>) -> &'a CallLayout {
     &plan.calls[plan.calls.len() - 1]
 }
 
-pub(super) fn payload<'a>(plan: &Plan<'a>, call: &'a CallLayout, is_input: bool) -> Payload<'a> {
-    let (side, channels) = if is_input { ("Input", &call.inputs) } else { ("Output", &call.outputs) };
-    Payload {
-        name: format!("UPPER_APP_{}_{side}_Payload_t", camel(call.name)),
-        has_time: has_time(plan),
-        channels,
-    }
-}
-
 /// Returns the header of the messages.
 fn messages(plan: &Plan<'_>) -> String {
     let mut text = "/* Messages of the app: numbers in the byte order of the processor. */\n#ifndef UPPER_APP_MSG_H\n\
@@ -145,7 +136,7 @@ fn messages(plan: &Plan<'_>) -> String {
         .to_owned();
     for call in plan.calls {
         for (is_input, side, about) in [(true, "Input", "Inputs"), (false, "Output", "Outputs")] {
-            let payload = payload(plan, call, is_input);
+            let payload = Payload::for_call(plan, call, is_input);
             let _ = write!(
                 text,
                 "/* {about} of `LOWER_{}`. {} */\n{}",

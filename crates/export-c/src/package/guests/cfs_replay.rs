@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::camel;
-use super::cfs::payload;
+use super::payload::Payload;
 use crate::control_system::{CallLayout, NumberKind};
 use crate::package::Plan;
 use crate::package::signature::has_time;
@@ -14,7 +14,7 @@ pub(super) fn replay(plan: &Plan<'_>) -> String {
     for (is_input, side) in [(true, "input"), (false, "output")] {
         let mut rows = Vec::new();
         for call in plan.calls {
-            let (payload, name) = (payload(plan, call, is_input), camel(call.name));
+            let (payload, name) = (Payload::for_call(plan, call, is_input), camel(call.name));
             let message = format!("UPPER_APP_{name}_{}_t", camel(side));
             let members: Vec<String> = payload
                 .channels
