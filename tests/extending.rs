@@ -113,7 +113,7 @@ const KINDS: [Kind; 14] = [
             "export-c/src/control_system/b_dot.rs",
             "export-c/src/control_system/excluded_parts.rs",
             "export-c/src/control_system/mod.rs",
-            "export-c/src/control_system/mode_system.rs",
+            "export-c/src/control_system/mode_laws.rs",
             "export-c/src/flight_sources.rs",
             "scenario/src/remarks.rs",
         ],

@@ -1,12 +1,12 @@
 //! Functions of flight code in the precision of the flight computer.
 
-use flexsc_flight::attitude_estimator::AttitudeEstimator;
+use flexsc_flight::attitude_estimator::{AttitudeEstimator, EstimatorOutput};
 use flexsc_flight::attitude_filter::{AttitudeBiasFilter, GyroNoise};
 use flexsc_flight::attitude_gate::AttitudeGate;
 use flexsc_flight::attitude_history::AttitudeHistoryEntry;
 use flexsc_flight::attitude_law::AttitudeFeedback;
 use flexsc_flight::axis_motion::{AxisMotion, AxisReference, total_angle};
-use flexsc_flight::b_dot::{FieldRate, opposing_moment};
+use flexsc_flight::b_dot::{self, FieldRate, opposing_moment};
 use flexsc_flight::biquad::BiquadFilter;
 use flexsc_flight::magnetorquers::{moment_of_torque, torque_of_moment};
 use flexsc_flight::matrix3::Matrix3;
@@ -15,11 +15,11 @@ use flexsc_flight::mode_readings;
 use flexsc_flight::mode_supervisor::{ModeSupervisor, ModeTest, SupervisedExit};
 use flexsc_flight::momentum_unloading::MomentumUnloading;
 use flexsc_flight::quaternion::Quaternion;
-use flexsc_flight::supervised_mode::SupervisedMode;
+use flexsc_flight::supervised_mode::{SupervisedMode, TargetChange};
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::torque_distribution;
 use flexsc_flight::vector3::Vector3;
-use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
+use flexsc_flight::wheel_allocation::{AllocatedWheel, drive};
 use flexsc_flight::wheel_momentum;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -61,14 +61,6 @@ impl Precision {
         match self {
             Self::Double => of.minus(from),
             Self::Single => Vector3::double(&of.single().minus(&from.single())),
-        }
-    }
-
-    /// Returns the sum of two vectors.
-    pub fn sum(self, one: &Vector3, other: &Vector3) -> Vector3 {
-        match self {
-            Self::Double => one.plus(other),
-            Self::Single => Vector3::double(&one.single().plus(&other.single())),
         }
     }
 
@@ -127,22 +119,20 @@ impl Precision {
         }
     }
 
-    /// Writes the torques of all wheels that give a demanded torque (N m), within a limit (N m).
-    pub fn allocate(
+    /// Gives wheels the torques that sum up to `counter` without a demanded torque (N m), within a limit (N m).
+    pub fn drive(
         self,
         wheels: &mut [AllocatedWheel],
         demanded: &Vector3,
+        counter: &Vector3,
         is_least_largest: bool,
         limit: f64,
     ) {
         match self {
-            Self::Double => {
-                allocate(wheels, demanded, is_least_largest);
-                limit_torques(wheels, limit);
-            }
+            Self::Double => drive(wheels, demanded, counter, is_least_largest, limit),
             Self::Single => changed_list(wheels, |wheels| {
-                crate::wheel_allocation::allocate(wheels, &demanded.single(), is_least_largest);
-                crate::wheel_allocation::limit_torques(wheels, limit.single());
+                let (demanded, counter) = (demanded.single(), counter.single());
+                crate::wheel_allocation::drive(wheels, &demanded, &counter, is_least_largest, limit.single());
             }),
         }
     }
@@ -152,6 +142,21 @@ impl Precision {
         match self {
             Self::Double => from.rotation_to(to),
             Self::Single => Vector3::double(&from.single().rotation_to(&to.single())),
+        }
+    }
+
+    /// Returns the angle (rad) of an attitude from a target, and ends a change to it.
+    pub fn angle_from(
+        self,
+        change: &mut TargetChange,
+        target: &Quaternion,
+        attitude: &Quaternion,
+    ) -> Vector3 {
+        match self {
+            Self::Double => change.angle_from(target, attitude),
+            Self::Single => Vector3::double(&changed(change, |change| {
+                change.angle_from(&target.single(), &attitude.single())
+            })),
         }
     }
 
@@ -213,9 +218,8 @@ impl Precision {
         match self {
             Self::Double => estimator.attitude(now, entries),
             Self::Single => {
-                let since = if now.is_before(estimator.since) { now } else { estimator.since };
-                let latest = &entries[estimator.history.latest()].filter;
-                self.attitude_after(latest, &estimator.reading, now.since(since))
+                let (estimator, entry) = latest(estimator, entries);
+                Quaternion::double(&estimator.attitude(now.single(), &entry))
             }
         }
     }
@@ -225,21 +229,24 @@ impl Precision {
         match self {
             Self::Double => estimator.rate(entries),
             Self::Single => {
-                self.difference(&estimator.reading, &entries[estimator.history.latest()].filter.bias)
+                let (estimator, entry) = latest(estimator, entries);
+                Vector3::double(&estimator.rate(&entry))
             }
         }
     }
 
-    /// Returns the standard deviation of the attitude of an estimator about each axis (rad).
-    pub fn deviation(self, estimator: &AttitudeEstimator, entries: &[AttitudeHistoryEntry]) -> Vector3 {
+    /// Returns the estimate of an estimator with its uncertainty.
+    pub fn output(
+        self,
+        estimator: &AttitudeEstimator,
+        now: Ticks,
+        entries: &[AttitudeHistoryEntry],
+    ) -> EstimatorOutput {
         match self {
-            Self::Double => estimator.deviation(entries),
+            Self::Double => estimator.output(now, entries),
             Self::Single => {
-                let variances = entries[estimator.history.latest()].filter.covariance.rows;
-                let [x, y, z] = [0, 1, 2].map(|axis: usize| {
-                    f64::double(&crate::square_root::sqrt(variances[axis][axis].single()))
-                });
-                Vector3 { x, y, z }
+                let (estimator, entry) = latest(estimator, entries);
+                EstimatorOutput::double(&estimator.output(now.single(), &entry))
             }
         }
     }
@@ -296,11 +303,42 @@ impl Precision {
         }
     }
 
+    /// Returns the moments (A m²) of B-dot laws within limits, for gains and a rate of change of the field (T/s).
+    pub fn moments(self, field_rate: &Vector3, gains: &Vector3, limits: &Vector3) -> Vector3 {
+        match self {
+            Self::Double => b_dot::moments(field_rate, gains, limits),
+            Self::Single => Vector3::double(&crate::b_dot::moments(
+                &field_rate.single(),
+                &gains.single(),
+                &limits.single(),
+            )),
+        }
+    }
+
     /// Returns the torque (N m) of a cycle in which wheels with this momentum (N m s) are unloaded.
     pub fn unloading_torque(self, law: &mut MomentumUnloading, stored: &Vector3) -> Vector3 {
         match self {
             Self::Double => law.torque(stored),
             Self::Single => Vector3::double(&changed(law, |law| law.torque(&stored.single()))),
+        }
+    }
+
+    /// Begins a cycle in which magnetorquers unload wheels: writes their moment (A m²), and returns the torque (N m) that the wheels
+    /// counteract.
+    pub fn begin_magnetic(
+        self,
+        law: &mut MomentumUnloading,
+        stored: &Vector3,
+        [field, limits]: [&Vector3; 2],
+        moment: &mut Vector3,
+    ) -> Vector3 {
+        match self {
+            Self::Double => law.begin_magnetic(stored, field, limits, moment),
+            Self::Single => Vector3::double(&changed(law, |law| {
+                changed(moment, |moment| {
+                    law.begin_magnetic(&stored.single(), &field.single(), &limits.single(), moment)
+                })
+            })),
         }
     }
 
@@ -363,4 +401,15 @@ impl Precision {
             })),
         }
     }
+}
+
+/// Returns the twin of an estimator whose history is its latest entry.
+fn latest(
+    estimator: &AttitudeEstimator,
+    entries: &[AttitudeHistoryEntry],
+) -> (crate::attitude_estimator::AttitudeEstimator, [crate::attitude_history::AttitudeHistoryEntry; 1]) {
+    let entry = entries[estimator.history.latest()].single();
+    let mut twin = estimator.single();
+    (twin.history.first, twin.history.entries) = (0, 1);
+    (twin, [entry])
 }

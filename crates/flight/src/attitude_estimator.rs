@@ -10,6 +10,9 @@ use crate::square_root::sqrt;
 use crate::ticks::Ticks;
 use crate::vector3::Vector3;
 
+/// Number of components of a measurement, by which the normalised innovation squared is divided.
+const COMPONENTS: f64 = 3.0;
+
 /// Returns the end of the interval that a gyro reading covers, which arrives with a latency; until the first latency after the start
 /// has elapsed, the start.
 #[inline]
@@ -36,6 +39,25 @@ pub struct AttitudeEstimator {
     pub started: Ticks,
     /// Last measurement that corrected the filter.
     pub correction: Correction,
+}
+
+/// Estimate with its uncertainty, and counts of refused readings.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct EstimatorOutput {
+    /// Estimated attitude.
+    pub attitude: Quaternion,
+    /// Estimated rate (rad/s).
+    pub rate: Vector3,
+    /// Number of readings of all sensors refused since the start.
+    pub refused: u64,
+    /// Time since the last correction, or since the start (s).
+    pub age: f64,
+    /// Innovation of the last correction, body axes (rad).
+    pub innovation: Vector3,
+    /// Normalised innovation squared of the last correction, over the number of its components.
+    pub nis: f64,
+    /// Standard deviation of the attitude about each axis (rad).
+    pub deviation: Vector3,
 }
 
 impl AttitudeEstimator {
@@ -143,6 +165,19 @@ impl AttitudeEstimator {
             x: sqrt(filter.covariance.rows[0][0]),
             y: sqrt(filter.covariance.rows[1][1]),
             z: sqrt(filter.covariance.rows[2][2]),
+        }
+    }
+
+    /// Returns the estimate at `now` with its uncertainty.
+    pub fn output(&self, now: Ticks, entries: &[AttitudeHistoryEntry]) -> EstimatorOutput {
+        EstimatorOutput {
+            attitude: self.attitude(now, entries),
+            rate: self.rate(entries),
+            refused: self.history.refusals(),
+            age: self.age(now),
+            innovation: self.correction.innovation,
+            nis: self.correction.nis / COMPONENTS,
+            deviation: self.deviation(entries),
         }
     }
 }

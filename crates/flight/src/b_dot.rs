@@ -78,3 +78,12 @@ pub fn opposing_moment(gain: f64, field_rate: f64) -> f64 {
 pub fn limited_moment(demanded: f64, limit: f64) -> f64 {
     clamp(demanded, -limit, limit)
 }
+
+/// Returns the moments along the axes (A m²), within their largest ones, for gains (A m² s/T) and a rate of change of the field (T/s).
+pub fn moments(field_rate: &Vector3, gains: &Vector3, limits: &Vector3) -> Vector3 {
+    Vector3 {
+        x: limited_moment(opposing_moment(gains.x, field_rate.x), limits.x),
+        y: limited_moment(opposing_moment(gains.y, field_rate.y), limits.y),
+        z: limited_moment(opposing_moment(gains.z, field_rate.z), limits.z),
+    }
+}

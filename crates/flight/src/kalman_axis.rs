@@ -104,3 +104,16 @@ impl KalmanAxis {
         }
     }
 }
+
+/// Sets the mean and the covariance of a filter: the mean to the numbers of `given` from `first` on, the covariance to independent
+/// states with these variances.
+pub fn reset(given: &[f64], first: usize, variances: &[f64], mean: &mut [f64], covariance: &mut [f64]) {
+    let order: usize = variances.len();
+    for entry in 0..covariance.len() {
+        covariance[entry] = 0.0;
+    }
+    for index in 0..order {
+        mean[index] = given[first + index];
+        covariance[index * (order + 1)] = variances[index];
+    }
+}

@@ -39,6 +39,18 @@ pub enum RelayEvent {
     Timeout,
 }
 
+impl RelayEvent {
+    /// Returns the event with a number: 0 the start, 1 and 2 the guards, any other the time.
+    pub fn from_number(number: i64) -> Self {
+        match number {
+            0 => Self::Start,
+            1 => Self::FirstGuard,
+            2 => Self::SecondGuard,
+            _ => Self::Timeout,
+        }
+    }
+}
+
 /// Torque from now on, and the conditions of the next decision.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct RelayCommand {
@@ -168,6 +180,12 @@ pub struct PolledRelay {
 }
 
 impl PolledRelay {
+    /// Decides at an event, for an estimated angle (rad).
+    pub fn decide(&mut self, now: Ticks, event: RelayEvent, angle: f64) {
+        self.has_started = true;
+        self.command = self.law.decide(now, event, angle);
+    }
+
     /// Returns the torque (N m) from this sample on, for a measured angle (rad). A guard counts before the time, and one decision
     /// is made in a sample.
     pub fn step(&mut self, now: Ticks, angle: f64) -> f64 {

@@ -95,3 +95,17 @@ pub fn limit_torques(wheels: &mut [AllocatedWheel], limit: f64) {
         }
     }
 }
+
+/// Gives the wheels the torques that sum up to `counter`, which counteracts a torque, without a demanded torque (N m): the wheels turn
+/// the body the other way. No wheel exceeds a limit (N m).
+pub fn drive(
+    wheels: &mut [AllocatedWheel],
+    demanded: &Vector3,
+    counter: &Vector3,
+    is_least_largest: bool,
+    limit: f64,
+) {
+    let sum: Vector3 = counter.minus(demanded);
+    allocate(wheels, &sum, is_least_largest);
+    limit_torques(wheels, limit);
+}

@@ -193,7 +193,7 @@ impl Integral<'_> {
 
     /// Returns the largest number of intervals whose lines are not too many; `least` are needed.
     fn most_intervals(&self, least: usize) -> Result<usize, ConfigError> {
-        let columns: usize = self.sources.iter().map(|source| source.parts.len()).sum();
+        let columns: usize = self.sources.iter().map(|source| source.loads.len()).sum();
         let each = kronrod().count() * columns * self.transfer.line_count();
         let most = (MOST_LINES / each.max(1)).min(MOST_INTERVALS);
         if least <= most {
@@ -261,12 +261,9 @@ impl Integral<'_> {
             let Some(squares) = self.transfer.sensed_squares(*frequency) else { return Vec::new() };
             let mut sums = vec![0.0; squares.nrows()];
             for source in &self.sources {
-                let densities = source.density.at(*frequency);
-                for (place, column) in &source.parts {
-                    let own = squares.column(*column);
-                    sums.iter_mut()
-                        .zip(&own)
-                        .for_each(|(sum, square)| *sum += width * densities[*place] * square);
+                for (load, density) in source.loads.iter().zip(source.density.load_densities(*frequency)) {
+                    let own = squares.column(*load);
+                    sums.iter_mut().zip(&own).for_each(|(sum, square)| *sum += width * density * square);
                 }
             }
             sums

@@ -111,7 +111,7 @@ impl RequiredContrast {
         let loss = |_: usize, lines: &[SpectralLine]| {
             1.0 - ImageBlur::by_lines(required.exposure, lines.to_vec()).contrast(frequency, &[])
         };
-        let vibration = Vibration::new(&lines, &outputs, &loss)?;
+        let vibration = Vibration::new(&lines, &outputs, &loss, &[])?;
         let wheels = match WheelImbalance::from_scenario(parts.scenario)? {
             Some(imbalance) => {
                 Some(imbalance.refined_spectrum(&lines, &outputs)?.ok_or_else(NoiseError::without_speed)?)

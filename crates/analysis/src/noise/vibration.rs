@@ -76,7 +76,7 @@ impl Vibration {
     pub fn gaussian(lines: &LineLoop<'_>, outputs: &[usize]) -> Result<Self, ConfigError> {
         let Machines { mut keys, broadband: bands, loads, .. } = Machines::new(lines.parts.scenario);
         keys.truncate(bands.len());
-        let (frequency_hz, motions) = broadband(lines, outputs, &loads, bands)?;
+        let (frequency_hz, motions) = broadband(lines, outputs, &loads, bands, &[])?;
         Ok(Self { sources: keys, frequency_hz, outputs: outputs.iter().copied().zip(motions).collect() })
     }
 

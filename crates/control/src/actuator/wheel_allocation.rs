@@ -94,8 +94,8 @@ impl Allocation {
     /// less about the same axis if one of them would exceed `limit` (N m).
     pub fn allocate(&mut self, against: &Vector, demanded: &Vector, limit: f64) {
         let (is_least_largest, precision) = (self.is_least_largest(), self.precision);
-        let sum = precision.difference(&to_vector3(against), &to_vector3(demanded));
-        precision.allocate(&mut self.wheels, &sum, is_least_largest, limit);
+        let (demanded, counter) = (to_vector3(demanded), to_vector3(against));
+        precision.drive(&mut self.wheels, &demanded, &counter, is_least_largest, limit);
     }
 
     /// Returns the wheels as flight code has them, with the torques of the last allocation, at first 0.

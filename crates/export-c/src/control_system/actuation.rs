@@ -36,7 +36,7 @@ pub enum UnloadingDevice {
     /// Magnetorquers, with their largest moment along each axis (A m²).
     Magnetorquers(Vector3),
     /// Groups of jets about each axis, with their torques.
-    Jets(Vec<JetPair>, Vec<JetTorques>),
+    Jets(Box<[JetPair; 3]>, Box<[JetTorques; 3]>),
 }
 
 /// Unloading of wheels.
@@ -158,8 +158,8 @@ impl Actuation {
     fn drive_wheels(&mut self) -> Vec<u64> {
         let counter = self.unloading.as_ref().map_or(Vector3::ZERO, |unit| unit.counter);
         let Some(own) = &mut self.wheels else { return Vec::new() };
-        let sum = self.precision.difference(&counter, &self.demanded);
-        self.precision.allocate(&mut own.wheels, &sum, own.is_least_largest, own.limit);
+        let WheelDistribution { wheels, limit, is_least_largest } = own;
+        self.precision.drive(wheels, &self.demanded, &counter, *is_least_largest, *limit);
         own.wheels.iter().map(|wheel| wheel.torque.to_bits()).collect()
     }
 
@@ -217,7 +217,7 @@ impl Actuation {
                 inputs.push(field);
                 moment_channel()
             }
-            UnloadingDevice::Jets(pairs, _) => on_time_channel(pairs),
+            UnloadingDevice::Jets(pairs, _) => on_time_channel(&pairs[..]),
         };
         let about = "Begins a cycle in which the wheels are unloaded, at its period; at one time with the step it may come before or after it.";
         Some(CallLayout {
@@ -240,11 +240,12 @@ impl UnloadingUnit {
             ActuatorKind::Jets(jets) if jets.allocation == FiringMethod::Groups => {
                 let groups = scenario.study.unloading_groups.as_ref()?;
                 let pair = |axis: usize| jet_pair(groups, axis, period, jets.pulse_width());
-                let torques = groups.iter().map(|[plus, minus]| JetTorques {
-                    plus: to_vector3(&plus.push.torque),
-                    minus: to_vector3(&minus.push.torque),
-                });
-                UnloadingDevice::Jets([0, 1, 2].map(pair).to_vec(), torques.collect())
+                let torques = |axis: usize| {
+                    let [plus, minus] =
+                        [0, 1].map(|group: usize| to_vector3(&groups[axis][group].push.torque));
+                    JetTorques { plus, minus }
+                };
+                UnloadingDevice::Jets(Box::new([0, 1, 2].map(pair)), Box::new([0, 1, 2].map(torques)))
             }
             _ => return None,
         };
@@ -262,18 +263,13 @@ impl UnloadingUnit {
         match (&self.device, held) {
             (UnloadingDevice::Magnetorquers(_), Some(held)) => vector_words(&held).to_vec(),
             (UnloadingDevice::Magnetorquers(limits), None) => {
-                let torque = precision.unloading_torque(&mut self.law, stored);
-                let field = vector(words);
-                let moment = precision.moment_of_torque(&torque, &field, limits);
-                self.counter = precision.torque_of_moment(&moment, &field);
+                let (field, mut moment) = (vector(words), Vector3::ZERO);
+                self.counter = precision.begin_magnetic(&mut self.law, stored, [&field, limits], &mut moment);
                 vector_words(&moment).to_vec()
             }
             (UnloadingDevice::Jets(pairs, torques), _) => {
-                let torque = self.law.torque(stored);
-                let demands = [torque.x, torque.y, torque.z];
-                let on_times = [0, 1, 2].map(|axis: usize| pairs[axis].on_time_of_torque(demands[axis]));
-                let [roll, pitch, yaw] = [0, 1, 2].map(|axis: usize| torques[axis].impulse(on_times[axis]));
-                self.counter = roll.plus(&pitch).plus(&yaw).divided(self.law.period);
+                let mut on_times = [0.0; 3];
+                self.counter = self.law.begin_jets(stored, pairs, torques, &mut on_times);
                 on_times.map(f64::to_bits).to_vec()
             }
         }

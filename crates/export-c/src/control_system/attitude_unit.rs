@@ -6,7 +6,6 @@ use flexsc_core::control::estimator::attitude::{FilterSetup, SensorRole};
 use flexsc_core::control::sensor::SensorKind;
 use flexsc_core::numerics::flight_types::{to_matrix3, to_matrix6x3};
 use flexsc_core::numerics::time::Span;
-use flexsc_core::record::AttitudeEstimate;
 use flexsc_flight::attitude_estimator::AttitudeEstimator;
 use flexsc_flight::attitude_filter::GyroNoise;
 use flexsc_flight::attitude_gate::AttitudeGate;
@@ -135,12 +134,13 @@ impl AttitudeUnit {
     pub(super) fn calls(&self) -> [CallLayout; 2] {
         let attitude = || Channel::unit("attitude", "Estimated attitude: quaternion w, x, y, z", 4);
         let start = CallLayout {
-            name: "start",
-            about: "Starts the attitude filter at this time with an attitude and a gyro bias; at any time, and again after a fault.",
             is_start: true,
-            period: None,
             inputs: vec![attitude(), Channel::real("bias", "Estimated gyro bias (rad/s)", 3, 1e-5)],
             outputs: vec![attitude()],
+            ..CallLayout::new(
+                "start",
+                "Starts the attitude filter at this time with an attitude and a gyro bias; at any time, and again after a fault.",
+            )
         };
         let mut inputs = vec![
             Channel::flag("gyro_is_valid", "True if there is a gyro reading", 1),
@@ -187,14 +187,8 @@ impl AttitudeUnit {
         ]);
         outputs
             .extend(self.correctors.iter().map(|corrector| refused(format!("{}_refused", corrector.name))));
-        let sample = CallLayout {
-            name: "sample",
-            about: "Takes a sample of the sensors.",
-            is_start: false,
-            period: None,
-            inputs,
-            outputs,
-        };
+        let sample =
+            CallLayout { inputs, outputs, ..CallLayout::new("sample", "Takes a sample of the sensors.") };
         [start, sample]
     }
 
@@ -242,18 +236,16 @@ impl AttitudeUnit {
                     precision.take_observation(estimator, sensor, times, &observation, entries, observations);
             }
         }
-        let (attitude, rate) = (self.attitude(now), self.rate());
-        let Self { estimator, entries, precision, .. } = &*self;
-        let mut outputs = quaternion_words(&attitude).to_vec();
-        outputs.extend(vector_words(&rate));
+        let own = precision.output(estimator, now, entries);
+        let counters = &estimator.history.refused;
+        let mut outputs = quaternion_words(&own.attitude).to_vec();
+        outputs.extend(vector_words(&own.rate));
         outputs.extend(statuses.into_iter().map(|status| status as u64));
-        let history = &estimator.history;
-        outputs.extend([history.refusals(), history.refused[0], self.age(now).to_bits()]);
-        outputs.extend(vector_words(&estimator.correction.innovation));
-        let nis = estimator.correction.nis / AttitudeEstimate::MEASUREMENTS;
-        outputs.push(precision.rounded(nis).to_bits());
-        outputs.extend(vector_words(&precision.deviation(estimator, entries)));
-        outputs.extend((1..).zip(&self.correctors).map(|(sensor, _)| history.refused[counter(sensor)]));
+        outputs.extend([own.refused, counters[0], own.age.to_bits()]);
+        outputs.extend(vector_words(&own.innovation));
+        outputs.push(own.nis.to_bits());
+        outputs.extend(vector_words(&own.deviation));
+        outputs.extend((1..).zip(&self.correctors).map(|(sensor, _)| counters[counter(sensor)]));
         outputs
     }
 

@@ -4,7 +4,7 @@ use flexsc_core::Scenario;
 use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::control::law::LawKind;
 use flexsc_core::numerics::time::Span;
-use flexsc_flight::b_dot::{FieldRate, limited_moment};
+use flexsc_flight::b_dot::FieldRate;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
 use flexsc_flight_precision::Precision;
@@ -101,12 +101,8 @@ impl BDotLaws {
 
     /// Returns the moments (A m²) for a rate of change of the field (T/s).
     pub fn moment(&self, rate: &Vector3) -> Vector3 {
-        let rates = [rate.x, rate.y, rate.z];
-        let [x, y, z] = [0, 1, 2].map(|axis| {
-            let moment = self.precision.opposing_moment(self.gains[axis], rates[axis]);
-            limited_moment(moment, self.limits[axis])
-        });
-        Vector3 { x, y, z }
+        let [gains, limits] = [self.gains, self.limits].map(|[x, y, z]| Vector3 { x, y, z });
+        self.precision.moments(rate, &gains, &limits)
     }
 }
 

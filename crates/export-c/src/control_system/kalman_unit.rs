@@ -5,7 +5,7 @@ use flexsc_core::control::estimator::{EstimateOutputs, LinearFilter, linear_filt
 use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::numerics::random::Seed;
 use flexsc_flight::kalman::KalmanSample;
-use flexsc_flight::kalman_axis::{KalmanAxis, KalmanFeed};
+use flexsc_flight::kalman_axis::{KalmanAxis, KalmanFeed, reset};
 
 use super::{CallLayout, Channel, WordReader};
 
@@ -78,14 +78,10 @@ impl AxisFilter {
     }
 
     /// Starts the filter with a mean.
-    fn start(&mut self, mean: Vec<f64>) {
+    fn start(&mut self, mean: &[f64]) {
         let KalmanAxis { feed, motion, mode, .. } = self.estimate;
         self.estimate = KalmanAxis::new(feed, motion, mode, self.measurements);
-        self.covariance.fill(0.0);
-        for (index, variance) in self.variances.iter().enumerate() {
-            self.covariance[index * (mean.len() + 1)] = *variance;
-        }
-        self.mean = mean;
+        reset(mean, 0, &self.variances, &mut self.mean, &mut self.covariance);
     }
 }
 
@@ -110,12 +106,10 @@ impl KalmanUnit {
         let states: usize = self.axes.iter().map(|axis| axis.mean.len()).sum();
         let about = "State of each axis: angle (rad), rate (rad/s), then displacement (rad) and rate (rad/s) of each mode";
         let start = CallLayout {
-            name: "start",
-            about: "Starts the Kalman filters with the mean of their state.",
             is_start: true,
-            period: None,
             inputs: vec![Channel::real("mean", about, states, 1e-3)],
             outputs: vec![angle("Rigid angle about each axis (rad)", 1.0)],
+            ..CallLayout::new("start", "Starts the Kalman filters with the mean of their state.")
         };
         let moment = "Mean torque over inertia about each axis since the sample before (rad/s\u{b2})";
         let mut outputs = vec![
@@ -128,10 +122,6 @@ impl KalmanUnit {
         }
         outputs.push(Channel::flag("has_lost_lock", "True if the filter has lost lock", axes));
         let sample = CallLayout {
-            name: "sample",
-            about: "Takes a sample of the sensors, at their period.",
-            is_start: false,
-            period: None,
             inputs: vec![
                 Channel::real("moment", moment, axes, 1e-4),
                 Channel::flag("is_measured", "True if there is a measurement", 1),
@@ -139,14 +129,15 @@ impl KalmanUnit {
                 Channel::real("rate", "Measured rate about each axis (rad/s)", axes, 1e-3),
             ],
             outputs,
+            ..CallLayout::new("sample", "Takes a sample of the sensors, at their period.")
         };
         let shift = CallLayout {
-            name: "shift",
-            about: "Shifts the angles when a new target begins, before a sample or step of that time.",
-            is_start: false,
-            period: None,
             inputs: vec![Channel::real("shift", "Change of the angle about each axis (rad)", axes, 1e-3)],
             outputs: vec![angle("Estimated angle about each axis (rad)", 1.0)],
+            ..CallLayout::new(
+                "shift",
+                "Shifts the angles when a new target begins, before a sample or step of that time.",
+            )
         };
         if axes == 3 { vec![start, sample, shift] } else { vec![start, sample] }
     }
@@ -158,7 +149,7 @@ impl KalmanUnit {
             0 => {
                 self.axes.iter_mut().for_each(|axis| {
                     let mean = words.list(axis.mean.len());
-                    axis.start(mean);
+                    axis.start(&mean);
                 });
                 self.axes.iter().map(|axis| axis.mean[0].to_bits()).collect()
             }

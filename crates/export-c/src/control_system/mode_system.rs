@@ -2,115 +2,21 @@
 
 use std::sync::Arc;
 
-use flexsc_core::control::estimator::EstimatorKind;
-use flexsc_core::control::flight_quantity::FlightQuantity;
-use flexsc_core::control::law::LawKind;
+use flexsc_core::Scenario;
 use flexsc_core::control::operation::ModeTables;
-use flexsc_core::{Scenario, ScenarioError};
 use flexsc_flight::mode_supervisor::{ModeSupervisor, ModeTest};
-use flexsc_flight::quaternion::Quaternion;
+use flexsc_flight::supervised_mode::TargetChange;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
 use flexsc_flight_precision::Precision;
 
 use super::actuation::{Actuation, Executing, are_jets, are_magnetorquers, are_wheels};
 use super::attitude_unit::{AttitudeUnit, quaternion, vector, vector_words};
-use super::b_dot::{BDotLaws, FieldUnit};
+use super::b_dot::FieldUnit;
 use super::mode_inputs::ModeInputs;
-use super::{CallLayout, Channel, NotExportable, SampledLaws, StoredMomentum, WordReader};
-
-/// Laws of a mode.
-#[derive(Clone, Debug)]
-pub struct LawsOfMode {
-    /// Name of the mode in C.
-    pub name: String,
-    /// Laws as they start.
-    pub start: ModeLaws,
-    /// Laws in the run.
-    current: ModeLaws,
-    /// True if wheels execute their commands.
-    pub drives_wheels: bool,
-    /// True if jets execute their commands.
-    pub fires_jets: bool,
-}
-
-/// Laws of a mode by what they read.
-#[derive(Clone, Debug)]
-pub enum ModeLaws {
-    /// Open loop, without commands.
-    Open,
-    /// B-dot laws, which read the rate of change of the magnetic field.
-    BDot(BDotLaws),
-    /// Laws that read estimates.
-    OnEstimates(Box<SampledLaws>),
-}
-
-impl ModeLaws {
-    /// Returns the laws that read estimates.
-    pub fn on_estimates(&self) -> Option<&SampledLaws> {
-        if let Self::OnEstimates(laws) = self { Some(laws) } else { None }
-    }
-
-    /// Returns the B-dot laws.
-    pub fn b_dot(&self) -> Option<&BDotLaws> {
-        if let Self::BDot(laws) = self { Some(laws) } else { None }
-    }
-
-    /// Returns the period (s); `None` of an open loop.
-    fn period(&self) -> Option<f64> {
-        match self {
-            Self::Open => None,
-            Self::BDot(laws) => Some(laws.period),
-            Self::OnEstimates(laws) => Some(laws.period),
-        }
-    }
-
-    /// Returns the function that decides; `None` of an open loop.
-    fn layout(&self) -> Option<CallLayout> {
-        match self {
-            Self::Open => None,
-            Self::BDot(_) => Some(BDotLaws::layout()),
-            Self::OnEstimates(laws) => Some(laws.layout()),
-        }
-    }
-}
-
-/// Inputs and outputs of a step: every call looks words up by their names.
-#[derive(Debug)]
-struct StepLayout {
-    /// Inputs of the laws of all modes, with the target attitude in place of estimates that the attitude filter gives.
-    inputs: Vec<Channel>,
-    /// Outputs of the laws of all modes.
-    outputs: Vec<Channel>,
-    /// Function of the laws of each mode; `None` of an open loop.
-    laws: Vec<Option<CallLayout>>,
-}
-
-impl StepLayout {
-    fn new(modes: &[LawsOfMode], has_estimator: bool, actuation: &Actuation) -> Self {
-        let laws: Vec<Option<CallLayout>> = modes.iter().map(|mode| mode.start.layout()).collect();
-        let mut inputs = each_once(laws.iter().flatten().flat_map(|layout| &layout.inputs));
-        if has_estimator {
-            let estimates = [FlightQuantity::Angle, FlightQuantity::Rate];
-            inputs.retain(|channel| !channel.quantity.is_some_and(|own| estimates.contains(&own)));
-            inputs.insert(0, Channel::from_quantity(FlightQuantity::TargetAttitude, 4, 1.0));
-        }
-        let mut outputs = each_once(laws.iter().flatten().flat_map(|layout| &layout.outputs));
-        outputs.extend(actuation.channels());
-        Self { inputs, outputs, laws }
-    }
-}
-
-/// Returns the first channel of each name.
-fn each_once<'a>(channels: impl Iterator<Item = &'a Channel>) -> Vec<Channel> {
-    let mut all: Vec<Channel> = Vec::new();
-    for channel in channels {
-        if !all.iter().any(|known| known.name == channel.name) {
-            all.push(channel.clone());
-        }
-    }
-    all
-}
+use super::mode_laws::{LawsOfMode, ModeLaws, laws_of_mode};
+use super::step_layout::{StepLayout, first_word, words_of};
+use super::{CallLayout, Channel, NotExportable, StoredMomentum, WordReader};
 
 /// Control system with modes of operation.
 #[derive(Clone, Debug)]
@@ -137,8 +43,8 @@ pub struct ModeSystem {
     pub inputs: ModeInputs,
     /// True if each mode has its target: at a change the angles move from one to the other.
     pub moves_angles: bool,
-    /// Angle from the target of the mode before, and that target, from a change on to the next step.
-    moved: Option<(Vector3, Quaternion)>,
+    /// Change of the target at that of the mode.
+    change: TargetChange,
     /// Inputs and outputs of a step.
     layout: Arc<StepLayout>,
     precision: Precision,
@@ -194,7 +100,7 @@ impl ModeSystem {
             stored,
             inputs,
             moves_angles,
-            moved: None,
+            change: TargetChange::NONE,
             layout,
             precision: scenario.flight_precision,
         })
@@ -224,19 +130,13 @@ impl ModeSystem {
     pub(super) fn calls(&self) -> Vec<CallLayout> {
         let mode = || Channel::integer("mode", "Number of the mode", 1, self.modes.len() as u64);
         let enter = CallLayout {
-            name: "enter",
-            about: "Enters a mode by command, as if a condition had been met.",
             is_start: true,
-            period: None,
             inputs: vec![mode()],
             outputs: vec![mode()],
+            ..CallLayout::new("enter", "Enters a mode by command, as if a condition had been met.")
         };
         let time = |name: &str, about: &str| Channel::integer(name, about, 1, 0);
         let supervise = CallLayout {
-            name: "supervise",
-            about: "Tests the conditions of the present mode, and changes the mode if one is met; it comes before the step of the same time.",
-            is_start: false,
-            period: None,
             inputs: self.inputs.channels.clone(),
             outputs: vec![
                 mode(),
@@ -252,16 +152,20 @@ impl ModeSystem {
                 time("period_whole", "Period of the mode: whole seconds"),
                 time("period_part", "Period of the mode: femtoseconds past them"),
             ],
+            ..CallLayout::new(
+                "supervise",
+                "Tests the conditions of the present mode, and changes the mode if one is met; it comes before the step of the same time.",
+            )
         };
         let mut outputs = self.layout.outputs.clone();
         outputs.push(mode());
         let step = CallLayout {
-            name: "step",
-            about: "Decides by the laws of the present mode on the commands of a period; outputs that these laws do not have are 0.",
-            is_start: false,
-            period: None,
             inputs: self.layout.inputs.clone(),
             outputs,
+            ..CallLayout::new(
+                "step",
+                "Decides by the laws of the present mode on the commands of a period; outputs that these laws do not have are 0.",
+            )
         };
         let estimator = self.estimator.iter().flat_map(AttitudeUnit::calls);
         let field = self.field.iter().map(|_| FieldUnit::layout());
@@ -317,7 +221,7 @@ impl ModeSystem {
         let mode = if mode < self.modes.len() { mode } else { 0 };
         self.supervisor.enter(now, mode, &mut self.tables.modes, &mut self.tables.exits);
         self.start_laws();
-        self.moved = None;
+        self.change.is_pending = false;
         vec![mode as u64]
     }
 
@@ -338,8 +242,7 @@ impl ModeSystem {
             self.start_laws();
             if let Some(unit) = self.estimator.as_ref().filter(|_| self.moves_angles) {
                 let target = ModeInputs::target(inputs);
-                let angle = unit.angle_from(&target, now);
-                self.moved = Some((angle, target));
+                self.change.begin(&target, &unit.angle_from(&target, now));
             }
         }
         let active = self.supervisor.active;
@@ -364,11 +267,7 @@ impl ModeSystem {
         let mut motion = None;
         if let Some(unit) = &self.estimator {
             let target = quaternion(&mut WordReader::new(inputs));
-            let mut angle = unit.angle_from(&target, now);
-            // At a change the engine moves the angles from one target to the other.
-            if let Some((before, from)) = self.moved.take() {
-                angle = self.precision.sum(&before, &self.precision.rotation(&target, &from));
-            }
+            let angle = self.precision.angle_from(&mut self.change, &target, &unit.attitude(now));
             let rate = unit.rate();
             let words = |values: [f64; 3]| values.map(f64::to_bits);
             motion = Some([words([angle.x, angle.y, angle.z]), words([rate.x, rate.y, rate.z])]);
@@ -437,68 +336,4 @@ impl ModeSystem {
     pub fn active_laws(&self) -> Option<&ModeLaws> {
         self.modes.get(self.supervisor.active).map(|mode| &mode.start)
     }
-}
-
-/// Returns the laws of a mode or stage.
-fn laws_of_mode(scenario: &Scenario, index: usize, has_modes: bool) -> Result<ModeLaws, NotExportable> {
-    let written = if has_modes {
-        scenario.mode.get(index).map(|mode| &mode.law)
-    } else {
-        scenario.law.stages().get(index).map(|stage| &stage.law)
-    };
-    match written {
-        None | Some(LawKind::Open(_)) => return Ok(ModeLaws::Open),
-        Some(LawKind::Relay(_)) => {
-            let reason = "decides at events, and laws of modes in flight code decide at their period: `--mode NAME` exports it alone";
-            return Err(NotExportable::new("law.relay", reason));
-        }
-        Some(law @ LawKind::BDot(_)) => {
-            let laws: Vec<&LawKind> = (0..scenario.study.axes.len()).map(|axis| law.about(axis)).collect();
-            return Ok(ModeLaws::BDot(BDotLaws::new(scenario, &laws)?));
-        }
-        Some(_) => {}
-    }
-    let reads_motion = written.is_some_and(|law| law.offers().reads_motion());
-    let alone = alone(scenario, index, has_modes, reads_motion);
-    let alone = alone.map_err(|error| NotExportable::new("law", format!("cannot act alone: {error}")))?;
-    let laws: Vec<&LawKind> = (0..alone.study.axes.len()).map(|axis| alone.law.about(axis)).collect();
-    let mut laws = SampledLaws::new(&alone, &laws)?;
-    // One filter and the same actuators serve the laws of all modes.
-    laws.read_estimates();
-    laws.only_command();
-    // Wheels that do not act in the mode store momentum all the same.
-    laws.stored = StoredMomentum::new(scenario);
-    Ok(ModeLaws::OnEstimates(Box::new(laws)))
-}
-
-/// Returns the scenario in which a mode or stage acts throughout, without requirements, which may name other modes. A filter that its
-/// law does not read goes on unread.
-fn alone(
-    scenario: &Scenario,
-    index: usize,
-    has_modes: bool,
-    reads_motion: bool,
-) -> Result<Scenario, ScenarioError> {
-    let whole = scenario.clone().with(|written| {
-        written.requirement.clear();
-        if let Some(EstimatorKind::Attitude(filter)) = &mut written.estimator {
-            filter.watch_only |= !reads_motion;
-        }
-    })?;
-    match scenario.mode.get(index).filter(|_| has_modes) {
-        Some(mode) => whole.in_mode(&mode.name),
-        None => whole.in_stage(index),
-    }
-}
-
-/// Returns the index of the first word of a channel.
-fn first_word(channels: &[Channel], name: &str) -> usize {
-    channels.iter().take_while(|channel| channel.name != name).map(|channel| channel.count).sum()
-}
-
-/// Returns the words of a channel.
-fn words_of<'a>(channels: &[Channel], words: &'a [u64], name: &str) -> &'a [u64] {
-    let count = channels.iter().find(|channel| channel.name == name).map_or(0, |channel| channel.count);
-    let from = first_word(channels, name);
-    words.get(from..from + count).unwrap_or_default()
 }

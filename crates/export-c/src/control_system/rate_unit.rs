@@ -26,16 +26,13 @@ impl RateUnit {
         let axes = self.axes.len();
         let about = "Change of the rate about each axis by the pulses since the sample before (rad/s)";
         CallLayout {
-            name: "sample",
-            about: "Takes a sample of the measured rates.",
-            is_start: false,
-            period: None,
             inputs: vec![
                 Channel::flag("is_measured", "True if there is a measurement", 1),
                 Channel::real("rate", "Measured rate about each axis (rad/s)", axes, 1e-3),
                 Channel::real("rate_change", about, axes, 1e-5),
             ],
             outputs: vec![Channel::from_quantity(FlightQuantity::Rate, axes, 1.0)],
+            ..CallLayout::new("sample", "Takes a sample of the measured rates.")
         }
     }
 

@@ -32,10 +32,6 @@ impl Relays {
         let zone = self.axes.iter().map(|relay| relay.law.dead_zone).fold(0.0, f64::max);
         let axes = self.axes.len();
         let decide = CallLayout {
-            name: "decide",
-            is_start: false,
-            period: None,
-            about: "Decides about an axis at an event; the command holds until a guard on the angle trips, or until its time.",
             inputs: vec![
                 Channel::integer("axis", "Axis, from 0", 1, axes as u64),
                 Channel::integer("event", "Event: 0 start, 1 first guard, 2 second guard, 3 time", 1, 4),
@@ -50,14 +46,15 @@ impl Relays {
                 Channel::flag("guard_is_lower", "True for a guard that trips at or below its level", 2),
                 Channel::real("guard_level", "Level of each guard (rad)", 2, 1.0),
             ],
+            ..CallLayout::new(
+                "decide",
+                "Decides about an axis at an event; the command holds until a guard on the angle trips, or until its time.",
+            )
         };
         let poll = CallLayout {
-            name: "poll",
-            is_start: false,
-            period: None,
-            about: "Polls the guards and the times of all axes at a sample.",
             inputs: vec![Channel::real("angle", "Measured angle about each axis (rad)", axes, 2.0 * zone)],
             outputs: vec![Channel::real("torque", "Torque about each axis (N m)", axes, 1.0)],
+            ..CallLayout::new("poll", "Polls the guards and the times of all axes at a sample.")
         };
         vec![decide, poll]
     }
@@ -69,15 +66,8 @@ impl Relays {
             return self.axes.iter_mut().map(|relay| relay.step(now, words.real()).to_bits()).collect();
         }
         let (axis, event, angle) = (words.word() as usize, words.word(), words.real());
-        let event = match event {
-            0 => RelayEvent::Start,
-            1 => RelayEvent::FirstGuard,
-            2 => RelayEvent::SecondGuard,
-            _ => RelayEvent::Timeout,
-        };
         let Some(relay) = self.axes.get_mut(axis) else { return Vec::new() };
-        relay.has_started = true;
-        relay.command = relay.law.decide(now, event, angle);
+        relay.decide(now, RelayEvent::from_number(event as i64), angle);
         output_words(&relay.command)
     }
 }

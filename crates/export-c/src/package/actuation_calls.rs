@@ -3,45 +3,10 @@
 use std::fmt::Write as _;
 
 use super::initialiser::initialiser;
-use super::signature::signature;
-use super::{Plan, momentum_calls, parameters};
-use crate::control_system::{Actuation, StoredMomentum, UnloadingDevice};
-
-/// Returns the paths of the functions of the flight code that the actuators call; `are_changes` are the kinds of commands that jets
-/// execute, changes of the rate or torques.
-pub fn roots(own: &Actuation, are_changes: &[bool]) -> Vec<&'static str> {
-    let mut roots = Vec::new();
-    if own.wheels.is_some() {
-        roots.extend(["wheel_allocation::allocate", "wheel_allocation::limit_torques"]);
-    }
-    if own.jets.is_some() {
-        let each = are_changes.iter().map(|is_change| on_time_function(*is_change).0);
-        roots.extend(each);
-    }
-    match own.unloading.as_ref().map(|unit| &unit.device) {
-        None => return roots,
-        Some(UnloadingDevice::Magnetorquers(_)) => {
-            roots.extend(["magnetorquers::moment_of_torque", "magnetorquers::torque_of_moment"]);
-        }
-        Some(UnloadingDevice::Jets(..)) => roots.extend([
-            "jet_pulses::JetPair::on_time_of_torque",
-            "jet_pulses::JetTorques::impulse",
-            "vector3::Vector3::plus",
-            "vector3::Vector3::divided",
-        ]),
-    }
-    roots.extend(["momentum_unloading::MomentumUnloading::torque", "vector3::Vector3::minus"]);
-    roots
-}
-
-/// Returns the function that converts a command of jets, in Rust and in C.
-fn on_time_function(is_change: bool) -> (&'static str, &'static str) {
-    if is_change {
-        ("jet_pulses::JetPair::on_time_of_change", "jet_pair_on_time_of_change")
-    } else {
-        ("jet_pulses::JetPair::on_time_of_torque", "jet_pair_on_time_of_torque")
-    }
-}
+use super::shim::{self, VECTOR};
+use super::signature::{has_time, signature};
+use super::{Plan, estimator_calls, momentum_calls, parameters};
+use crate::control_system::{Actuation, AttitudeUnit, StoredMomentum, UnloadingDevice};
 
 /// Writes the members of the state.
 pub fn members(plan: &Plan<'_>, own: &Actuation, text: &mut String) {
@@ -58,23 +23,14 @@ pub fn members(plan: &Plan<'_>, own: &Actuation, text: &mut String) {
     }
 }
 
-/// Writes the groups of jets, and the function that sets the torques of unloaded wheels.
+/// Writes the groups of jets, and the limits of magnetorquers.
 pub fn constants(plan: &Plan<'_>, own: &Actuation, text: &mut String) {
-    let mut list = |about: &str, type_name: &str, name: &str, rows: Vec<String>| {
-        let _ = writeln!(
-            text,
-            "/* {about} */\nstatic const {} {name}[{}] = {{\n{}\n}};\n",
-            plan.type_name(type_name),
-            rows.len(),
-            rows.join(",\n")
-        );
-    };
     if let Some(pairs) = &own.jets {
-        list("Groups of jets about the axes.", "JetPair", "jets", rows(plan, pairs));
+        *text += &shim::list(plan, "Groups of jets about the axes.", "JetPair", "jets", pairs);
     }
-    let Some(unit) = &own.unloading else { return };
-    match &unit.device {
-        UnloadingDevice::Magnetorquers(limits) => {
+    match own.unloading.as_ref().map(|unit| &unit.device) {
+        None => {}
+        Some(UnloadingDevice::Magnetorquers(limits)) => {
             let _ = writeln!(
                 text,
                 "/* Largest moments of the magnetorquers (A m^2). */\nstatic const {} unloading_limits = {};\n",
@@ -82,23 +38,13 @@ pub fn constants(plan: &Plan<'_>, own: &Actuation, text: &mut String) {
                 initialiser(limits, plan.prefix)
             );
         }
-        UnloadingDevice::Jets(pairs, torques) => {
+        Some(UnloadingDevice::Jets(pairs, torques)) => {
             let about = "Groups of jets about the axes that unload the wheels.";
-            list(about, "JetPair", "unloading_jets", rows(plan, pairs));
-            list("Their torques (N m).", "JetTorques", "unloading_torques", rows(plan, torques));
+            *text += &shim::list(plan, about, "JetPair", "unloading_jets", &pairs[..]);
+            *text +=
+                &shim::list(plan, "Their torques (N m).", "JetTorques", "unloading_torques", &torques[..]);
         }
     }
-    let prefix = plan.prefix;
-    let _ = writeln!(
-        text,
-        "/* Sets the torques of the wheels, which turn the body the other way. */\nstatic void drive_wheels({prefix}_state *state, double *wheel_torque)\n{{\n    \
-         const {prefix}_vector3 demanded = vector3_minus(&state->counter, &state->demanded);\n{}}}\n",
-        allocation(plan, own, "", "wheel_torque")
-    );
-}
-
-fn rows(plan: &Plan<'_>, values: &[impl std::fmt::Debug]) -> Vec<String> {
-    values.iter().map(|value| format!("    {}", initialiser(value, plan.prefix))).collect()
 }
 
 /// Writes the statements that set the members of the state.
@@ -109,63 +55,51 @@ pub fn init(plan: &Plan<'_>, own: &Actuation, text: &mut String) {
         let _ = writeln!(text, "    state->wheels[{index}] = ({prefix}_allocated_wheel){value};");
     }
     if let Some(unit) = &own.unloading {
-        let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
-        let members = [("above", "above"), ("below", "below"), ("gain", "gain"), ("most", "torque")];
-        let law = members.into_iter().fold(initialiser(&unit.law, prefix), |law, (member, name)| {
-            let name = format!("unload_{name}");
-            let is_tuned = plan.parameters.iter().any(|own| own.name == name);
-            if is_tuned { parameters::replaced(&law, member, &format!("parameters->{name}")) } else { law }
-        });
+        let zero = shim::vector(plan, &["0.0"; 3]);
         let _ = writeln!(
             text,
-            "    state->unloading = ({prefix}_momentum_unloading){law};\n    state->counter = {zero};\n    state->demanded = {zero};"
+            "    state->unloading = ({prefix}_momentum_unloading){};\n    state->counter = {zero};\n    state->demanded = {zero};",
+            initialiser(&unit.law, prefix)
         );
+        parameters::apply(plan, "unloading.", text);
     }
 }
 
-/// Returns the allocation of a torque `demanded` to the wheels.
-fn allocation(plan: &Plan<'_>, own: &Actuation, indent: &str, output: &str) -> String {
-    let Some(wheels) = &own.wheels else { return String::new() };
+/// Writes the torques of the wheels for those that laws demand, and that the wheels counteract.
+fn drive(plan: &Plan<'_>, own: &Actuation, [demanded, counter]: [&str; 2], text: &mut String) {
+    let Some(wheels) = &own.wheels else { return };
     let (count, limit) = (wheels.wheels.len(), parameters::expression(plan, "wheel_torque", wheels.limit));
-    format!(
-        "{indent}    wheel_allocation_allocate(state->wheels, {count}, &demanded, {});\n\
-         {indent}    wheel_allocation_limit_torques(state->wheels, {count}, {limit});\n\
-         {indent}    for (size_t wheel = 0; wheel < {count}; ++wheel) {{\n{indent}        {output}[wheel] = state->wheels[wheel].torque;\n{indent}    }}\n",
-        wheels.is_least_largest
-    )
-}
-
-/// Writes the torques of the wheels for a demanded torque about each axis.
-pub fn wheels(plan: &Plan<'_>, own: &Actuation, torque: impl Fn(usize) -> String, text: &mut String) {
-    if own.wheels.is_none() {
-        return;
-    }
-    let prefix = plan.prefix;
-    let [x, y, z] = [0, 1, 2].map(torque);
-    if own.unloading.is_some() {
-        let _ = writeln!(
-            text,
-            "\n    state->demanded = ({prefix}_vector3){{ .x = {x}, .y = {y}, .z = {z} }};\n    drive_wheels(state, output->wheel_torque);"
-        );
-        return;
-    }
-    let _ = write!(
+    let _ = writeln!(
         text,
-        "\n    /* torques of the wheels, which turn the body the other way */\n    const {prefix}_vector3 demanded = \
-         ({prefix}_vector3){{ .x = 0.0 - {x}, .y = 0.0 - {y}, .z = 0.0 - {z} }};\n{}",
-        allocation(plan, own, "", "output->wheel_torque")
+        "    wheel_allocation_drive(state->wheels, {count}, {demanded}, {counter}, {}, {limit});\n    \
+         for (size_t wheel = 0; wheel < {count}; ++wheel) {{\n        output->wheel_torque[wheel] = state->wheels[wheel].torque;\n    }}",
+        wheels.is_least_largest
     );
 }
 
-/// Writes the on-times of jets for the commands in `from`.
-pub fn jets(own: &Actuation, is_change: bool, indent: &str, from: &str, text: &mut String) {
-    let Some(pairs) = &own.jets else { return };
-    let (function, demand) =
-        (on_time_function(is_change).1, if is_change { "rate_change" } else { "torque" });
-    for axis in 0..pairs.len() {
+/// Writes the torques of the wheels for a demanded torque about each axis.
+pub fn wheels<T: AsRef<str>>(plan: &Plan<'_>, own: &Actuation, torque: [T; 3], text: &mut String) {
+    if own.wheels.is_none() {
+        return;
+    }
+    let demanded = shim::vector(plan, &torque);
+    text.push_str("\n    /* torques of the wheels, which turn the body the other way */\n");
+    if own.unloading.is_some() {
+        let _ = writeln!(text, "    state->demanded = {demanded};");
+        return drive(plan, own, ["&state->demanded", "&state->counter"], text);
+    }
+    shim::variable(plan, "Vector3", "demanded", &demanded, text);
+    shim::variable(plan, "Vector3", "counter", &shim::vector(plan, &["0.0"; 3]), text);
+    drive(plan, own, ["&demanded", "&counter"], text);
+}
+
+/// Writes the on-times of jets for the commands among the outputs: changes of the rate, or torques.
+pub fn jets(own: &Actuation, is_change: bool, text: &mut String) {
+    let (function, command) = if is_change { ("change", "rate_change") } else { ("torque", "torque") };
+    for axis in 0..own.jets.as_ref().map_or(0, Vec::len) {
         let _ = writeln!(
             text,
-            "{indent}output->on_time[{axis}] = {function}(&jets[{axis}], {from}{demand}[{axis}]);"
+            "    output->on_time[{axis}] = jet_pair_on_time_of_{function}(&jets[{axis}], output->{command}[{axis}]);"
         );
     }
 }
@@ -174,8 +108,8 @@ pub fn jets(own: &Actuation, is_change: bool, indent: &str, from: &str, text: &m
 pub struct UnloadedWheels<'a> {
     pub actuation: &'a Actuation,
     pub stored: &'a StoredMomentum,
-    /// Number of entries of the attitude filter that gives the rate; `None` if the rate is an input.
-    pub entries: Option<usize>,
+    /// Attitude filter that gives the rate; `None` if the rate is an input.
+    pub estimator: Option<&'a AttitudeUnit>,
 }
 
 /// Writes the function that begins a cycle of the unloading. With B-dot laws `state->moment` has the moment of the magnetorquers, and
@@ -184,67 +118,30 @@ pub fn unload(plan: &Plan<'_>, wheels: &UnloadedWheels<'_>, held: Option<&str>, 
     let own = wheels.actuation;
     let Some(unit) = &own.unloading else { return };
     let Some(call) = plan.calls.iter().find(|call| call.name == "unload") else { return };
-    let prefix = plan.prefix;
-    let vector = |from: &str| {
-        format!("({prefix}_vector3){{ .x = input->{from}[0], .y = input->{from}[1], .z = input->{from}[2] }}")
-    };
     let _ = writeln!(text, "{}\n{{", signature(plan, call));
-    if super::signature::has_time(plan) {
+    if has_time(plan) {
         text.push_str("    (void)now;\n");
     }
-    let rate = match wheels.entries {
-        Some(entries) => {
-            format!("attitude_estimator_rate(&state->estimator, state->entries, {entries})")
-        }
-        None => vector("rate"),
-    };
-    let _ = writeln!(text, "    const {prefix}_vector3 rate = {rate};");
+    let rate = wheels.estimator.map_or_else(|| shim::vector_from(plan, "input->rate"), estimator_calls::rate);
+    shim::variable(plan, "Vector3", "rate", &rate, text);
     momentum_calls::declaration(plan, wheels.stored, "rate", text);
-    let torque = "momentum_unloading_torque(&state->unloading, &stored)";
     match &unit.device {
         UnloadingDevice::Magnetorquers(_) => {
-            let (moment, indent, declared) = match held {
-                Some(_) => ("state->moment", "        ", String::new()),
-                None => ("moment", "    ", format!("const {prefix}_vector3 ")),
+            shim::variable(plan, "Vector3", "field", &shim::vector_from(plan, "input->field"), text);
+            let begin = |moment: &str| {
+                format!("state->counter = momentum_unloading_begin_magnetic(&state->unloading, &stored, &field, &unloading_limits, &{moment});")
             };
-            let _ = writeln!(text, "    const {prefix}_vector3 field = {};", vector("field"));
-            if let Some(held) = held {
-                let _ = writeln!(text, "    if (!({held})) {{");
-            }
-            let _ = writeln!(
-                text,
-                "{indent}const {prefix}_vector3 torque = {torque};\n{indent}{declared}{moment} = magnetorquers_moment_of_torque(&torque, &field, &unloading_limits);\n\
-                 {indent}state->counter = magnetorquers_torque_of_moment(&{moment}, &field);"
-            );
-            if held.is_some() {
-                text.push_str("    }\n");
-            }
-            moment_output(moment, text);
+            let moment = if held.is_some() { "state->moment" } else { "moment" };
+            let _ = match held {
+                Some(held) => writeln!(text, "    if (!({held})) {{\n        {}\n    }}", begin(moment)),
+                None => writeln!(text, "    {} moment;\n    {}", plan.type_name("Vector3"), begin(moment)),
+            };
+            shim::spread("output->moment", moment, &VECTOR, text);
         }
-        UnloadingDevice::Jets(pairs, _) => {
-            let _ = writeln!(text, "    const {prefix}_vector3 torque = {torque};");
-            for (axis, component) in ["x", "y", "z"].into_iter().enumerate().take(pairs.len()) {
-                let _ = writeln!(
-                    text,
-                    "    output->on_time[{axis}] = jet_pair_on_time_of_torque(&unloading_jets[{axis}], torque.{component});\n    \
-                     const {prefix}_vector3 impulse_{component} = jet_torques_impulse(&unloading_torques[{axis}], output->on_time[{axis}]);"
-                );
-            }
-            let _ = writeln!(
-                text,
-                "    const {prefix}_vector3 impulse_xy = vector3_plus(&impulse_x, &impulse_y);\n    \
-                 const {prefix}_vector3 impulse = vector3_plus(&impulse_xy, &impulse_z);\n    \
-                 state->counter = vector3_divided(&impulse, {});",
-                initialiser(&unit.law.period, prefix)
-            );
-        }
+        UnloadingDevice::Jets(..) => text.push_str(
+            "    state->counter = momentum_unloading_begin_jets(&state->unloading, &stored, unloading_jets, unloading_torques, output->on_time);\n",
+        ),
     }
-    text.push_str("    drive_wheels(state, output->wheel_torque);\n}\n\n");
-}
-
-/// Writes the output of a magnetic moment.
-pub fn moment_output(moment: &str, text: &mut String) {
-    for (axis, component) in ["x", "y", "z"].into_iter().enumerate() {
-        let _ = writeln!(text, "    output->moment[{axis}] = {moment}.{component};");
-    }
+    drive(plan, own, ["&state->demanded", "&state->counter"], text);
+    text.push_str("}\n\n");
 }

@@ -3,61 +3,49 @@
 use std::fmt::Write as _;
 
 use super::initialiser::initialiser;
+use super::shim::{self, VECTOR};
 use super::signature::signature;
 use super::{Plan, parameters};
-use crate::control_system::{BDotLaws, BDotSystem};
-
-/// Functions of the flight code that the exported functions call.
-pub const ROOTS: [&str; 4] = [
-    "b_dot::FieldRate::take",
-    "b_dot::FieldRate::rate_at",
-    "b_dot::opposing_moment",
-    "b_dot::limited_moment",
-];
+use crate::control_system::{BDotLaws, BDotSystem, FieldUnit};
 
 /// Writes the functions of B-dot laws alone.
 pub fn functions(plan: &Plan<'_>, own: &BDotSystem, text: &mut String) {
-    let prefix = plan.prefix;
-    let field = initialiser(&own.field.field, prefix);
-    let _ = writeln!(
-        text,
-        "void {prefix}_init({prefix}_state *state)\n{{\n    state->field = ({prefix}_field_rate){field};"
-    );
-    parameters::init(plan, false, text);
+    let _ = writeln!(text, "void {0}_init({0}_state *state)\n{{", plan.prefix);
+    init(plan, &own.field, text);
+    parameters::init(plan, text);
     text.push_str("}\n\n");
     sample(plan, text);
-    let _ = writeln!(
-        text,
-        "{}\n{{\n    (void)input;\n    const {prefix}_vector3 field_rate = {CURRENT_RATE};",
-        signature(plan, &plan.calls[1])
-    );
-    for axis in 0..3 {
-        let _ = writeln!(text, "    output->moment[{axis}] = {};", moment(plan, &own.laws, None, axis));
-    }
+    let _ = writeln!(text, "{}\n{{\n    (void)input;", signature(plan, &plan.calls[1]));
+    moment(plan, &own.laws, None, text);
+    shim::spread("output->moment", "moment", &VECTOR, text);
     text.push_str("}\n");
+}
+
+/// Writes the statement of `init` that sets the rate of change of the field.
+pub fn init(plan: &Plan<'_>, unit: &FieldUnit, text: &mut String) {
+    let field = initialiser(&unit.field, plan.prefix);
+    let _ = writeln!(text, "    state->field = ({}){field};", plan.type_name("FieldRate"));
 }
 
 /// Writes the function that takes a sample of the field.
 pub fn sample(plan: &Plan<'_>, text: &mut String) {
     let Some(call) = plan.calls.iter().find(|call| call.name == "field") else { return };
-    let _ = writeln!(
-        text,
-        "{}\n{{\n    const {}_vector3 field = {{ .x = input->field[0], .y = input->field[1], .z = input->field[2] }};\n    \
-         field_rate_take(&state->field, now, &field);\n    output->field_rate[0] = state->field.rate.x;\n    \
-         output->field_rate[1] = state->field.rate.y;\n    output->field_rate[2] = state->field.rate.z;\n}}\n",
-        signature(plan, call),
-        plan.prefix
-    );
+    let _ = writeln!(text, "{}\n{{", signature(plan, call));
+    shim::variable(plan, "Vector3", "field", &shim::vector_from(plan, "input->field"), text);
+    text.push_str("    field_rate_take(&state->field, now, &field);\n");
+    shim::spread("output->field_rate", "state->field.rate", &VECTOR, text);
+    text.push_str("}\n\n");
 }
 
-/// Rate of change of the field at the time of a step, in C.
-pub const CURRENT_RATE: &str = "field_rate_rate_at(&state->field, now)";
-
-/// Returns the moment along an axis for the variable `field_rate`, in a mode or without modes.
-pub fn moment(plan: &Plan<'_>, laws: &BDotLaws, mode: Option<&str>, axis: usize) -> String {
-    let [gain, limit] = parameters::b_dot_names(mode, axis);
-    let gain = parameters::expression(plan, &gain, laws.gains[axis]);
-    let limit = parameters::expression(plan, &limit, laws.limits[axis]);
-    let component = ["x", "y", "z"][axis];
-    format!("b_dot_limited_moment(b_dot_opposing_moment({gain}, field_rate.{component}), {limit})")
+/// Writes the declaration of `moment`, that of the laws, in a mode or without modes.
+pub fn moment(plan: &Plan<'_>, laws: &BDotLaws, mode: Option<&str>, text: &mut String) {
+    let values = |part: usize, numbers: [f64; 3]| {
+        let value =
+            |axis| parameters::expression(plan, &parameters::b_dot_names(mode, axis)[part], numbers[axis]);
+        shim::vector(plan, &[0, 1, 2].map(value))
+    };
+    shim::variable(plan, "Vector3", "gains", &values(0, laws.gains), text);
+    shim::variable(plan, "Vector3", "limits", &values(1, laws.limits), text);
+    shim::variable(plan, "Vector3", "field_rate", "field_rate_rate_at(&state->field, now)", text);
+    shim::variable(plan, "Vector3", "moment", "b_dot_moments(&field_rate, &gains, &limits)", text);
 }

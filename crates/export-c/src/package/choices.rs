@@ -3,7 +3,6 @@
 use flexsc_flight::attitude_observation::ObservationKind;
 use flexsc_flight::error_measure::ErrorMeasure;
 
-use super::modes;
 use crate::control_system::{Actuation, ControlSystem, LawsOfAxes};
 use crate::translate::ConstantChoices;
 
@@ -45,24 +44,27 @@ impl Choices {
             ControlSystem::Relays(_) | ControlSystem::BDot(_) => {}
             ControlSystem::Modes(modes) => {
                 self.add_actuation(&modes.actuation);
-                for own in modes::systems(modes) {
-                    self.add(&own);
-                }
+                let laws = modes.modes.iter().filter_map(|mode| mode.start.on_estimates());
+                laws.for_each(|laws| self.add_laws(&laws.laws));
             }
             ControlSystem::Sampled(laws) => {
                 self.add_actuation(&laws.actuation);
-                match &laws.laws {
-                    LawsOfAxes::Pd(laws) => self.measures.extend(laws.iter().map(|(law, _)| law.measure)),
-                    LawsOfAxes::Attitude(laws) => {
-                        for (law, _) in laws {
-                            self.measures.push(law.measure);
-                            self.has_rate_limit.push(law.has_rate_limit);
-                            self.has_integral.push(law.has_integral);
-                        }
-                    }
-                    LawsOfAxes::PhasePlane(..) | LawsOfAxes::StateSpace(_) => {}
+                self.add_laws(&laws.laws);
+            }
+        }
+    }
+
+    fn add_laws(&mut self, laws: &LawsOfAxes) {
+        match laws {
+            LawsOfAxes::Pd(laws) => self.measures.extend(laws.iter().map(|(law, _)| law.measure)),
+            LawsOfAxes::Attitude(laws) => {
+                for (law, _) in laws {
+                    self.measures.push(law.measure);
+                    self.has_rate_limit.push(law.has_rate_limit);
+                    self.has_integral.push(law.has_integral);
                 }
             }
+            LawsOfAxes::PhasePlane(..) | LawsOfAxes::StateSpace(_) => {}
         }
     }
 

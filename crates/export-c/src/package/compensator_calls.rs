@@ -4,47 +4,19 @@ use std::fmt::Write as _;
 
 use flexsc_core::control::law::Compensator;
 
-use super::Plan;
 use super::initialiser::initialiser;
-
-/// Returns the paths of the functions of the flight code that compensators call.
-pub fn roots(laws: &[Compensator]) -> Vec<&'static str> {
-    let mut roots = vec!["compensator::advance"];
-    if laws.iter().any(|law| !law.sources.is_empty()) {
-        roots.push("compensator::read_sources");
-    }
-    roots
-}
+use super::law_scope::LawCalls;
+use super::shim;
+use super::signature::about;
 
 /// Writes the matrices, and the sources of the inputs about three axes.
-pub fn constants(plan: &Plan<'_>, laws: &[Compensator], text: &mut String) {
+pub fn constants(own: &LawCalls<'_>, laws: &[Compensator], text: &mut String) {
     for (index, law) in laws.iter().enumerate() {
-        let width = law.state.len() + law.inputs.len();
-        let row = |row: &[f64]| {
-            let entries: Vec<String> = row.iter().map(|entry| initialiser(entry, plan.prefix)).collect();
-            format!("    {}", entries.join(", "))
-        };
-        let rows: Vec<String> = law.matrices.chunks(width).map(row).collect();
-        let _ = writeln!(
-            text,
-            "/* Matrices of the compensator: the rows of [A B], then those of [C D]. */\nstatic const double matrices_{index}[{}] = {{\n{}\n}};\n",
-            law.matrices.len(),
-            rows.join(",\n")
-        );
-        if !law.sources.is_empty() {
-            let sources: Vec<String> = law
-                .sources
-                .iter()
-                .map(|source| format!("    {}", initialiser(source, plan.prefix)))
-                .collect();
-            let _ = writeln!(
-                text,
-                "/* Inputs of the compensator. */\nstatic const {}_compensator_source sources[{}] = {{\n{}\n}};\n",
-                plan.prefix,
-                sources.len(),
-                sources.join(",\n")
-            );
-        }
+        let (width, name) = (law.state.len() + law.inputs.len(), own.constant(&format!("matrices_{index}")));
+        let about = "Matrices of the compensator: the rows of [A B], then those of [C D].";
+        *text += &shim::numbers(own.plan, about, &name, &law.matrices, width);
+        let (about, name) = ("Inputs of the compensator.", own.constant("sources"));
+        *text += &shim::list(own.plan, about, "CompensatorSource", &name, &law.sources);
     }
 }
 
@@ -64,89 +36,80 @@ pub fn members(laws: &[Compensator], text: &mut String) {
 }
 
 /// Writes the step of a compensator, for inputs that are set before.
-fn advance(plan: &Plan<'_>, index: usize, law: &Compensator, text: &mut String) {
-    let (prefix, order) = (plan.prefix, law.state.len());
-    let range = initialiser(&law.range, prefix);
+fn advance(own: &LawCalls<'_>, index: usize, law: &Compensator, text: &mut String) {
+    let order = law.state.len();
     // Without states a list has no elements, and C has no such array.
     let (buffer, states) = if order > 0 {
-        (format!("double next[{order}]"), format!("state->compensator_{index}, {order}, next, {order}"))
+        let state = own.state(&format!("compensator_{index}"));
+        (format!("double next[{order}]"), format!("{state}, {order}, next, {order}"))
     } else {
         ("double none[1] = { 0.0 }".to_owned(), "none, 0, none, 0".to_owned())
     };
     let _ = writeln!(
         text,
-        "        const {prefix}_compensator_range range = {range};\n        {buffer};\n        \
-         compensator_advance(matrices_{index}, {}, inputs, {}, {states}, &range, state->command_{index}, {});",
+        "        const {} range = {};\n        {buffer};\n        \
+         compensator_advance({}, {}, inputs, {}, {states}, &range, {}, {});",
+        own.plan.type_name("CompensatorRange"),
+        initialiser(&law.range, own.plan.prefix),
+        own.constant(&format!("matrices_{index}")),
         law.matrices.len(),
         law.inputs.len(),
+        own.state(&format!("command_{index}")),
         law.outputs.len(),
     );
 }
 
-/// Returns the statement that sets the command about an axis.
-fn command(law: &Compensator, value: &str, axis: usize, axes: usize) -> String {
-    let about = |name: &str| super::signature::about(name, axis, axes);
-    if law.is_acceleration {
-        let reference = about("reference_acceleration");
-        format!("output->{} = {value} + input->{reference};", about("acceleration"))
+/// Writes the statement that sets the command about an axis.
+fn command(own: &LawCalls<'_>, law: &Compensator, value: &str, axis: usize, text: &mut String) {
+    let about = |name: &str| about(name, axis, own.laws.axis_count());
+    let _ = if law.is_acceleration {
+        let (output, reference) = (about("acceleration"), about("reference_acceleration"));
+        writeln!(text, "        output->{output} = {value} + input->{reference};")
     } else {
-        format!("output->{} = {value};", about("torque"))
-    }
+        writeln!(text, "        output->{} = {value};", about("torque"))
+    };
 }
 
-/// Writes the step of a compensator about one axis; `estimate` returns the estimated angle or rate about it.
-pub fn step_about(
-    plan: &Plan<'_>,
-    law: &Compensator,
-    (axis, axes): (usize, usize),
-    estimate: impl Fn(&str, usize) -> String,
-    text: &mut String,
-) {
-    let about = |name: &str| super::signature::about(name, axis, axes);
+/// Writes the step of a compensator about one axis.
+pub fn step_about(own: &LawCalls<'_>, law: &Compensator, axis: usize, text: &mut String) {
     let inputs = law.inputs.len();
     let _ = writeln!(text, "    {{\n        double inputs[{inputs}];");
     for (index, name) in ["angle", "rate"].into_iter().enumerate().take(inputs) {
-        let reference = about(&format!("reference_{name}"));
-        let _ = writeln!(text, "        inputs[{index}] = input->{reference} - {};", estimate(name, axis));
+        let reference = about(&format!("reference_{name}"), axis, own.laws.axis_count());
+        let _ =
+            writeln!(text, "        inputs[{index}] = input->{reference} - {};", own.estimate(name, axis));
     }
-    advance(plan, axis, law, text);
-    let value = format!("state->command_{axis}[0]");
-    let _ = writeln!(text, "        {}\n    }}", command(law, &value, axis, axes));
+    advance(own, axis, law, text);
+    command(own, law, &format!("{}[0]", own.state(&format!("command_{axis}"))), axis, text);
+    text.push_str("    }\n");
 }
 
-/// Writes the step of a compensator about three axes together; `estimate` returns the estimated angle or rate about an axis.
-pub fn step_together(
-    plan: &Plan<'_>,
-    law: &Compensator,
-    speeds: usize,
-    estimate: impl Fn(&str, usize) -> String,
-    text: &mut String,
-) {
-    let prefix = plan.prefix;
+/// Writes the step of a compensator about three axes together.
+pub fn step_together(own: &LawCalls<'_>, law: &Compensator, text: &mut String) {
     let error = |name: &str| {
-        let [x, y, z] =
-            [0, 1, 2].map(|axis| format!("input->reference_{name}[{axis}] - {}", estimate(name, axis)));
-        format!("({prefix}_vector3){{ .x = {x}, .y = {y}, .z = {z} }}")
+        let axis = |axis| format!("input->reference_{name}[{axis}] - {}", own.estimate(name, axis));
+        shim::vector(own.plan, &[0, 1, 2].map(axis))
     };
-    let speeds = match speeds {
+    let speeds = match own.laws.speed_count() {
         0 => "NULL, 0".to_owned(),
         1 => "&input->wheel_speed, 1".to_owned(),
         count => format!("input->wheel_speed, {count}"),
     };
-    let (sources, inputs) = (law.sources.len(), law.inputs.len());
+    let (count, inputs, vector) = (law.sources.len(), law.inputs.len(), own.plan.type_name("Vector3"));
     let _ = writeln!(
         text,
-        "\n    /* the three axes together */\n    {{\n        const {prefix}_vector3 angle_error = {};\n        \
-         const {prefix}_vector3 rate_error = {};\n        double inputs[{inputs}];\n        \
-         compensator_read_sources(sources, {sources}, &angle_error, &rate_error, {speeds}, inputs, {inputs});",
+        "\n    /* the three axes together */\n    {{\n        const {vector} angle_error = {};\n        \
+         const {vector} rate_error = {};\n        double inputs[{inputs}];\n        \
+         compensator_read_sources({}, {count}, &angle_error, &rate_error, {speeds}, inputs, {inputs});",
         error("angle"),
         error("rate"),
+        own.constant("sources"),
     );
-    advance(plan, 0, law, text);
+    advance(own, 0, law, text);
     for axis in 0..3 {
         let output = law.axes.iter().position(|own| *own == axis);
-        let value = output.map_or_else(|| "0.0".to_owned(), |output| format!("state->command_0[{output}]"));
-        let _ = writeln!(text, "        {}", command(law, &value, axis, 3));
+        let command_of = |output| format!("{}[{output}]", own.state("command_0"));
+        command(own, law, &output.map_or_else(|| "0.0".to_owned(), command_of), axis, text);
     }
     text.push_str("    }\n");
 }

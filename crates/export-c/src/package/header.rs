@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 
-use super::{
-    Plan, actuation_calls, compensator_calls, estimator_calls, kalman_calls, parameters, start_values,
-};
-use crate::control_system::{Channel, ControlSystem, LawsOfAxes, NumberKind};
+use super::law_scope::LawCalls;
+use super::signature::about;
+use super::{Plan, actuation_calls, estimator_calls, kalman_calls, modes, parameters, start_values};
+use crate::control_system::{Channel, ControlSystem, NumberKind, Relays};
 use crate::translate::Translation;
 
 /// Returns the header file: the types of the flight code, the state of the control system, and its functions.
-pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String {
+pub fn header(plan: &Plan<'_>, translation: &Translation) -> String {
     let prefix = plan.prefix;
     let guard = format!("{}_H", prefix.to_uppercase());
     let mut text = format!(
@@ -27,7 +27,7 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
     text.push_str(translation.declarations.trim());
     text.push_str("\n\n");
     text.push_str(&parameters::definition(plan));
-    text.push_str(state);
+    text.push_str(&state(plan));
     for call in plan.calls {
         let _ = writeln!(text, "/* Inputs of `{prefix}_{}`. */", call.name);
         members(&call.inputs, &format!("{prefix}_{}_input", call.name), &mut text);
@@ -94,74 +94,42 @@ fn excluded_parts(plan: &Plan<'_>) -> String {
 /// Returns the C struct that holds the state of the control system between its calls.
 pub fn state(plan: &Plan<'_>) -> String {
     let mut text = String::new();
-    let array = |count: usize| if count == 1 { String::new() } else { format!("[{count}]") };
+    if let ControlSystem::Modes(own) = plan.system {
+        modes::law_states(plan, own, &mut text);
+    }
     text.push_str("/* State of the control system, which its functions change. */\ntypedef struct {\n");
     let mut member = |about: &str, type_name: &str, name: &str| {
         let _ = writeln!(text, "    /* {about} */\n    {} {name};", plan.type_name(type_name));
     };
     match plan.system {
-        // Written beside the laws of each mode.
-        ControlSystem::Modes(_) => {}
-        ControlSystem::Relays(relays) => {
-            member("Relay about each axis.", "PolledRelay", &format!("relay{}", array(relays.axes.len())));
+        ControlSystem::Modes(own) => modes::members(plan, own, &mut text),
+        ControlSystem::Relays(Relays { axes }) => {
+            member("Relay about each axis.", "PolledRelay", &about("relay", axes.len(), axes.len()));
         }
         ControlSystem::BDot(_) => member("Rate of change of the magnetic field.", "FieldRate", "field"),
         ControlSystem::Sampled(laws) => {
-            let axes = array(laws.axis_count());
-            let (name, filters) = match &laws.laws {
-                LawsOfAxes::Pd(_) => (Some("PdLaw"), 0),
-                LawsOfAxes::PhasePlane(..) => (Some("PhasePlaneLaw"), 0),
-                LawsOfAxes::StateSpace(_) => (None, 0),
-                LawsOfAxes::Attitude(own) => (
-                    Some("AttitudeFeedback"),
-                    own.iter().map(|(_, filters)| filters.len()).max().unwrap_or(0),
-                ),
-            };
-            if let Some(name) = name {
-                member("Law about each axis.", name, &format!("law{axes}"));
-            }
-            if filters > 0 {
-                member(
-                    "Filters of each law.",
-                    "BiquadFilter",
-                    &format!("filters[{}][{filters}]", laws.axis_count()),
-                );
-            }
-            if let Some(unit) = &laws.estimator {
-                for (about, name, declared) in estimator_calls::members(unit) {
-                    member(about, name, &declared);
-                }
-            }
+            LawCalls { plan, laws, mode: None, has_attitude: false }.members(&mut text);
+            estimator_calls::members(plan, laws.estimator.as_ref(), &mut text);
+            let (about_axes, axes) = ("Filter of the rate about each axis.", laws.axis_count());
             if laws.rate_filter.is_some() {
-                member(
-                    "Filter of the rate about each axis.",
-                    "RigidRateFilter",
-                    &format!("rate_filter{axes}"),
-                );
+                let (kind, name) = (plan.type_name("RigidRateFilter"), about("rate_filter", axes, axes));
+                let _ = writeln!(text, "    /* {about_axes} */\n    {kind} {name};");
             }
             actuation_calls::members(plan, &laws.actuation, &mut text);
             if let Some(unit) = &laws.filter {
                 kalman_calls::members(plan, unit, &mut text);
             }
-            if let LawsOfAxes::StateSpace(own) = &laws.laws {
-                compensator_calls::members(own, &mut text);
-            }
         }
     }
-    member_of_parameters(plan, &mut text);
-    let _ = writeln!(text, "}} {}_state;\n", plan.prefix);
-    text
-}
-
-/// Writes the member of the state with the parameters.
-pub fn member_of_parameters(plan: &Plan<'_>, text: &mut String) {
-    if !plan.parameters.is_empty() && plan.mode.is_none() {
+    if !plan.parameters.is_empty() {
         let _ = writeln!(
             text,
             "    /* Numbers that are tuned in flight. */\n    {}_parameters parameters;",
             plan.prefix
         );
     }
+    let _ = writeln!(text, "}} {}_state;\n", plan.prefix);
+    text
 }
 
 /// Writes a struct with a member for each channel.

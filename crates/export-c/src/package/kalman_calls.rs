@@ -2,18 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::Plan;
 use super::initialiser::initialiser;
 use super::signature::{about, signature};
+use super::{Plan, shim};
 use crate::control_system::KalmanUnit;
-
-/// Functions of the flight code that the exported functions call.
-pub const ROOTS: [&str; 4] = [
-    "kalman_axis::KalmanAxis::new",
-    "kalman_axis::KalmanAxis::take",
-    "kalman_axis::KalmanAxis::shift",
-    "kalman_axis::KalmanAxis::has_lost_lock",
-];
 
 /// Writes the members of the state.
 pub fn members(plan: &Plan<'_>, unit: &KalmanUnit, text: &mut String) {
@@ -36,43 +28,29 @@ pub fn members(plan: &Plan<'_>, unit: &KalmanUnit, text: &mut String) {
 /// Writes the models, and the function that starts the filters with means, which `init` calls too.
 pub fn start(plan: &Plan<'_>, unit: &KalmanUnit, text: &mut String) {
     let prefix = plan.prefix;
-    let list = |numbers: &[f64]| {
-        let rows = numbers.chunks(4).map(|row| {
-            let entries: Vec<String> = row.iter().map(|entry| initialiser(entry, prefix)).collect();
-            format!("    {}", entries.join(", "))
-        });
-        rows.collect::<Vec<_>>().join(",\n")
-    };
     for (axis, filter) in unit.axes.iter().enumerate() {
-        let _ = writeln!(
-            text,
-            "/* Model of a filter: transition matrix over a period, change of the state by a unit moment, covariance of the noise. */\n\
-             static const double model_{axis}[{}] = {{\n{}\n}};\n\n/* Variances at the start. */\nstatic const double variances_{axis}[{}] = {{\n{}\n}};\n",
-            filter.model.len(),
-            list(&filter.model),
-            filter.variances.len(),
-            list(&filter.variances),
-        );
+        let about = "Model of a filter: transition matrix over a period, change of the state by a unit moment, covariance of the noise.";
+        *text += &shim::numbers(plan, about, &format!("model_{axis}"), &filter.model, 4);
+        let name = format!("variances_{axis}");
+        *text += &shim::numbers(plan, "Variances at the start.", &name, &filter.variances, 4);
     }
     let _ = writeln!(
         text,
         "/* Starts the filters with the mean of their states. */\nstatic void start_filters({prefix}_state *state, const double *mean)\n{{"
     );
-    let mut first = 0;
+    let (mut first, states) = (0, unit.axes.iter().map(|axis| axis.mean.len()).sum::<usize>());
     for (axis, filter) in unit.axes.iter().enumerate() {
         let (order, estimate) = (filter.mean.len(), about("estimate", axis, unit.axes.len()));
         let feed = format!("{prefix}_kalman_feed_{}", super::snake(&format!("{:?}", filter.estimate.feed)));
-        let place = if first == 0 { "index".to_owned() } else { format!("{first} + index") };
         let _ = writeln!(
             text,
-            "    state->{estimate} = kalman_axis_new({}, {}, {}, {});\n    memset(state->covariance_{axis}, 0, sizeof state->covariance_{axis});\n    \
-             for (size_t index = 0; index < {order}; ++index) {{\n        state->mean_{axis}[index] = mean[{place}];\n        \
-             state->covariance_{axis}[index * {}] = variances_{axis}[index];\n    }}",
+            "    state->{estimate} = kalman_axis_new({}, {}, {}, {});\n    \
+             kalman_axis_reset(mean, {states}, {first}, variances_{axis}, {order}, state->mean_{axis}, {order}, state->covariance_{axis}, {});",
             feed.to_uppercase(),
             filter.estimate.motion,
             filter.estimate.mode,
             filter.measurements,
-            order + 1,
+            order * order,
         );
         first += order;
     }

@@ -13,15 +13,19 @@ mod header;
 mod initialiser;
 mod interface;
 mod kalman_calls;
+mod law_calls;
+mod law_scope;
 mod main_loop;
 mod modes;
 mod momentum_calls;
 mod parameters;
 mod rate_calls;
+mod shim;
 mod signature;
 mod source;
 mod start_values;
 mod static_files;
+mod supervisor_calls;
 
 use flexsc_core::Scenario;
 use flexsc_flight_precision::Precision;
@@ -30,7 +34,7 @@ use sha2::{Digest, Sha256};
 use crate::control_system::{CallLayout, ControlSystem, ExcludedPart};
 use crate::flight_sources::sources_in;
 use crate::self_test::self_tests;
-use crate::translate::{Translation, TranslationError, in_single, translate_pruned};
+use crate::translate::{Translation, TranslationError, in_single, translate_called};
 use crate::vectors::{self, CallVector, VectorError};
 
 pub use accuracy::OutputAccuracy;
@@ -109,8 +113,6 @@ struct Plan<'a> {
     parameters: &'a [FlightParameter],
     /// Inputs with which estimators start in run 0; `None` without an estimator, or without vectors.
     run_start: Option<&'a [u64]>,
-    /// Name of the mode whose laws are written; `None` of the whole control system.
-    mode: Option<&'a str>,
     precision: Precision,
 }
 
@@ -180,7 +182,6 @@ impl Prepared {
             excluded_parts: &self.excluded_parts,
             parameters: &self.parameters,
             run_start: start_values::find(&self.calls, &self.vectors),
-            mode: None,
             precision: self.precision,
         }
     }
@@ -198,18 +199,13 @@ struct Code {
 impl Code {
     /// Writes the code of a control system.
     fn new(plan: &Plan<'_>) -> Result<Self, ExportError> {
-        let (functions, state) = match plan.system {
-            ControlSystem::Modes(own) => (modes::functions(plan, own), modes::state(plan, own)),
-            _ => (calls::functions(plan), header::state(plan)),
-        };
-        let functions = plan.in_precision(functions);
+        let functions = plan.in_precision(calls::functions(plan));
         let sources = sources_in(plan.precision);
-        let roots = source::roots(plan.system, &functions);
         let choices = choices::constant_choices(plan.system);
-        let translation =
-            translate_pruned(&sources, &roots, plan.prefix, &choices).map_err(ExportError::Translation)?;
+        let translation = translate_called(&sources, &functions, plan.prefix, &choices)
+            .map_err(ExportError::Translation)?;
         Ok(Self {
-            header: plan.in_precision(header::header(plan, &translation, &state)),
+            header: plan.in_precision(header::header(plan, &translation)),
             source: plan.in_precision(source::source(plan, &translation, &functions)),
             parameters: parameters::source(plan).map(|source| plan.in_precision(source)),
             translation,

@@ -68,28 +68,6 @@ fn law_parameter(mode: Option<&str>, axis: usize, axes: usize, member: &str) -> 
     if axes == 1 { format!("{mode}{member}") } else { format!("{mode}{}_{member}", AXES[axis]) }
 }
 
-/// Returns true if laws have parameters, which their start then takes.
-pub fn has_law_parameters(laws: &SampledLaws) -> bool {
-    (0..laws.axis_count()).any(|axis| !law_members(&laws.laws, axis).is_empty())
-}
-
-/// Returns the initialiser of the law about an axis, with `parameters` in place of the defaults.
-pub fn tuned(plan: &Plan<'_>, laws: &SampledLaws, axis: usize, initialiser: String) -> String {
-    let members = law_members(&laws.laws, axis);
-    members.iter().fold(initialiser, |text, (member, ..)| {
-        let name = law_parameter(plan.mode, axis, laws.axis_count(), member);
-        replaced(&text, member, &format!("parameters->{name}"))
-    })
-}
-
-/// Returns an initialiser with another value of a member.
-pub fn replaced(initialiser: &str, member: &str, value: &str) -> String {
-    let head = format!(".{member} = ");
-    let Some((before, rest)) = initialiser.split_once(&head) else { return initialiser.to_owned() };
-    let end = rest.find([',', ' ']).unwrap_or(rest.len());
-    format!("{before}{head}{value}{}", &rest[end..])
-}
-
 /// Returns the names of the parameters of B-dot laws along an axis: gain, and largest moment.
 pub fn b_dot_names(mode: Option<&str>, axis: usize) -> [String; 2] {
     let mode = mode.map_or_else(String::new, |mode| format!("{mode}_"));
@@ -298,15 +276,19 @@ pub fn defaults(plan: &Plan<'_>, text: &mut String) {
     );
 }
 
-/// Writes the statement of `init` that takes the defaults; `is_read` is true if it reads parameters too.
-pub fn init(plan: &Plan<'_>, is_read: bool, text: &mut String) {
-    if plan.parameters.is_empty() || plan.mode.is_some() {
-        return;
+/// Writes the statement of `init` that takes the defaults.
+pub fn init(plan: &Plan<'_>, text: &mut String) {
+    if !plan.parameters.is_empty() {
+        let _ = writeln!(text, "    state->parameters = {}_default_parameters;", plan.prefix);
     }
-    let prefix = plan.prefix;
-    let _ = writeln!(text, "    state->parameters = {prefix}_default_parameters;");
-    if is_read {
-        let _ = writeln!(text, "    const {prefix}_parameters *parameters = &state->parameters;");
+}
+
+/// Writes the statements that set the members of the state in use whose names begin with `start` to their parameters.
+pub fn apply(plan: &Plan<'_>, start: &str, text: &mut String) {
+    for own in plan.parameters {
+        if let Some(running) = own.running.as_ref().filter(|running| running.starts_with(start)) {
+            let _ = writeln!(text, "    state->{running} = state->parameters.{};", own.name);
+        }
     }
 }
 
@@ -369,11 +351,7 @@ pub fn source(plan: &Plan<'_>) -> Option<String> {
         "    return 0;\n}}\n\nint32_t {prefix}_set_parameters({prefix}_state *state, const {prefix}_parameters *parameters)\n{{\n    \
          const int32_t refused = {prefix}_parameters_check(parameters);\n    if (refused != 0) {{\n        return refused;\n    }}\n    state->parameters = *parameters;"
     );
-    for own in plan.parameters {
-        if let Some(running) = &own.running {
-            let _ = writeln!(text, "    state->{running} = parameters->{};", own.name);
-        }
-    }
+    apply(plan, "", &mut text);
     text.push_str("    return 0;\n}\n");
     Some(text)
 }

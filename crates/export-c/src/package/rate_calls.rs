@@ -6,9 +6,6 @@ use super::Plan;
 use super::signature::{about, signature};
 use crate::control_system::RateUnit;
 
-/// Function of the flight code that the exported function calls.
-pub const ROOT: &str = "rigid_rate::RigidRateFilter::take";
-
 /// Writes the function.
 pub fn sample(plan: &Plan<'_>, unit: &RateUnit, text: &mut String) {
     let axes = unit.axes.len();

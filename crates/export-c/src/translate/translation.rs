@@ -1,6 +1,6 @@
 //! Translation of the items that some roots need.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::comments::comment;
 use super::constants::define_constant;
@@ -79,31 +79,46 @@ pub fn translate(
     roots: &[&str],
     prefix: &str,
 ) -> Result<Translation, TranslationError> {
-    translate_pruned(files, roots, prefix, &ConstantChoices::default())
+    translate_items(files, prefix, &ConstantChoices::default(), |program, _| {
+        let find = |root: &&str| {
+            program.find_absolute(root).ok_or_else(|| {
+                TranslationError::without_place(format!("the root `{root}`"), "paths `module::name` of items")
+            })
+        };
+        roots.iter().map(find).collect()
+    })
 }
 
-/// Translates as [`translate`], without the branches that choices which are constant never take.
-pub fn translate_pruned(
+/// Translates the functions that a text in C calls, without the branches that choices which are constant never take.
+pub fn translate_called(
     files: &[SourceFile<'_>],
-    roots: &[&str],
+    callers: &str,
     prefix: &str,
     choices: &ConstantChoices,
+) -> Result<Translation, TranslationError> {
+    let words: BTreeSet<&str> =
+        callers.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_').collect();
+    translate_items(files, prefix, choices, |program, names| {
+        let is_called = |index: &usize| {
+            let is_function = matches!(program.items[*index].content, ItemContent::Function { .. });
+            is_function && words.contains(names.item(*index))
+        };
+        Ok((0..program.items.len()).filter(is_called).collect())
+    })
+}
+
+/// Translates the items that those need which `roots` returns; all items of the files are checked.
+fn translate_items(
+    files: &[SourceFile<'_>],
+    prefix: &str,
+    choices: &ConstantChoices,
+    roots: impl FnOnce(&Program<'_>, &Names) -> Outcome<Vec<usize>>,
 ) -> Result<Translation, TranslationError> {
     let program = Program::collect(files, choices)?;
     let names = Names::new(&program, prefix)?;
     let functions = translate_functions(&program, &names)?;
     refuse_recursion(&program, &functions)?;
-    let mut indices = Vec::new();
-    for root in roots {
-        let Some(index) = program.find_absolute(root) else {
-            return Err(TranslationError::without_place(
-                format!("the root `{root}`"),
-                "paths `module::name` of items",
-            ));
-        };
-        indices.push(index);
-    }
-    let parts = reach(&program, &functions, &indices)?;
+    let parts = reach(&program, &functions, &roots(&program, &names)?)?;
     let mut translation = Translation {
         is_single: program.is_single,
         includes: INCLUDES.to_owned(),

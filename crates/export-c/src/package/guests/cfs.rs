@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use sha2::{Digest, Sha256};
 
 use super::payload::Payload;
-use super::{camel, named};
+use super::{camel, cfs_replay, named};
 use crate::control_system::{CallLayout, Channel, NumberKind};
 use crate::package::signature::{has_time, inits_at_time};
 use crate::package::{PackageFile, Plan, parameters, text};
@@ -60,7 +60,7 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
             "cfs/stubs/cfe_core_api_base_msgids.h".to_owned(),
             include_str!("../files/cfs/stub_base_msgids.h"),
         ),
-        file("cfs/stubs/replay.c".to_owned(), &replay(plan)),
+        file("cfs/stubs/replay.c".to_owned(), &cfs_replay::replay(plan)),
     ];
     if let Some(source) = parameters::source(plan) {
         files.extend([
@@ -125,15 +125,6 @@ fn law<'a>(plan: &Plan<'a>) -> &'a CallLayout {
     &plan.calls[plan.calls.len() - 1]
 }
 
-fn payload<'a>(plan: &Plan<'a>, call: &'a CallLayout, is_input: bool) -> Payload<'a> {
-    let (side, channels) = if is_input { ("Input", &call.inputs) } else { ("Output", &call.outputs) };
-    Payload {
-        name: format!("UPPER_APP_{}_{side}_Payload_t", camel(call.name)),
-        has_time: has_time(plan),
-        channels,
-    }
-}
-
 /// Returns the header of the messages.
 fn messages(plan: &Plan<'_>) -> String {
     let mut text = "/* Messages of the app: numbers in the byte order of the processor. */\n#ifndef UPPER_APP_MSG_H\n\
@@ -145,7 +136,7 @@ fn messages(plan: &Plan<'_>) -> String {
         .to_owned();
     for call in plan.calls {
         for (is_input, side, about) in [(true, "Input", "Inputs"), (false, "Output", "Outputs")] {
-            let payload = payload(plan, call, is_input);
+            let payload = Payload::for_call(plan, call, is_input);
             let _ = write!(
                 text,
                 "/* {about} of `LOWER_{}`. {} */\n{}",
@@ -348,66 +339,6 @@ fn copy(channel: &Channel, to: &str, from: &str, converted: &str, text: &mut Str
             channel.count
         );
     }
-}
-
-/// Returns the program that replays the vectors through the messages of the app.
-fn replay(plan: &Plan<'_>) -> String {
-    let mut tables = String::new();
-    for (is_input, side) in [(true, "input"), (false, "output")] {
-        let mut rows = Vec::new();
-        for call in plan.calls {
-            let (payload, name) = (payload(plan, call, is_input), camel(call.name));
-            let message = format!("UPPER_APP_{name}_{}_t", camel(side));
-            let members: Vec<String> = payload
-                .channels
-                .iter()
-                .map(|channel| {
-                    let kind = match channel.kind {
-                        NumberKind::Real => 'R',
-                        NumberKind::Flag => 'F',
-                        NumberKind::Integer(_) => 'I',
-                    };
-                    format!(
-                        "    {{ \"{0}\", '{kind}', offsetof({1}, {0}), {2} }}",
-                        channel.name, payload.name, channel.count
-                    )
-                })
-                .collect();
-            // C has no empty array.
-            let list = if members.is_empty() { "NULL".to_owned() } else { format!("{}_{side}s", call.name) };
-            if !members.is_empty() {
-                let _ = writeln!(
-                    tables,
-                    "static const member {list}[{}] = {{\n{}\n}};\n",
-                    members.len(),
-                    members.join(",\n")
-                );
-            }
-            rows.push(format!(
-                "    {{ UPPER_APP_{}_{}_MID, sizeof({message}), offsetof({message}, Payload), {list}, {} }}",
-                call.name.to_uppercase(),
-                side.to_uppercase(),
-                members.len()
-            ));
-        }
-        let _ = writeln!(
-            tables,
-            "static const message_kind {side}s[{}] = {{\n{}\n}};\n",
-            rows.len(),
-            rows.join(",\n")
-        );
-    }
-    let most = plan.calls.iter().map(CallLayout::output_words).max().unwrap_or(0).max(1);
-    let most_input = plan.calls.iter().map(CallLayout::input_words).max().unwrap_or(0);
-    let time = if has_time(plan) { "#define HAS_TIME\n" } else { "" };
-    let table = if plan.parameters.is_empty() { "" } else { "#define HAS_PARAMETERS\n" };
-    let _ = writeln!(
-        tables,
-        "{time}{table}enum {{ CALLS = {}, MOST_WORDS = {most}, MOST_BYTES = {} }};\n",
-        plan.calls.len(),
-        8 * (most.max(most_input) + 8) + 64
-    );
-    include_str!("../files/cfs/replay.c").replace("TABLES", &tables)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! inputs wait until the guest is woken up. The others are called when their inputs arrive.
 
 mod cfs;
+mod cfs_replay;
 mod fprime;
 mod fprime_ports;
 mod fprime_stubs;

@@ -2,7 +2,10 @@
 
 use std::fmt::Write as _;
 
-use crate::control_system::{Channel, NumberKind};
+use super::camel;
+use crate::control_system::{CallLayout, Channel, NumberKind};
+use crate::package::Plan;
+use crate::package::signature::has_time;
 
 /// Bytes to which a payload is filled.
 const ALIGNMENT: usize = 8;
@@ -17,7 +20,14 @@ pub(super) struct Payload<'a> {
     pub channels: &'a [Channel],
 }
 
-impl Payload<'_> {
+impl<'a> Payload<'a> {
+    /// Returns the payload of a message of the app of cFS, for the inputs or the outputs of a function.
+    pub fn for_call(plan: &Plan<'a>, call: &'a CallLayout, is_input: bool) -> Self {
+        let (side, channels) = if is_input { ("Input", &call.inputs) } else { ("Output", &call.outputs) };
+        let name = format!("UPPER_APP_{}_{side}_Payload_t", camel(call.name));
+        Self { name, has_time: has_time(plan), channels }
+    }
+
     /// Returns the definition of the struct: numbers of 8 bytes, then truth values, then what fills it up.
     pub fn definition(&self) -> String {
         let mut text = "typedef struct {\n".to_owned();
