@@ -349,17 +349,18 @@ impl CallWriter<'_> {
         if self.model.call("supervise").is_some() {
             due("next_test", "supervise", "", text);
         }
+        if self.model.call("step").is_some() {
+            let then = "        const fmu_ticks never = {FMU_NEVER, 0};\n        const bool has_period = run->period.whole > 0 || run->period.part > 0;\n        \
+                 run->next_step = has_period ? fmu_sum(run->next_step, run->period) : never;\n";
+            due("next_step", "step", then, text);
+        }
+        // As in a run, where the actuator takes the commands first.
         if let Some(unload) = self.model.call("unload") {
             let period = ticks(Span::from_seconds(unload.layout.period.unwrap_or(1.0)));
             let then = format!(
                 "        const fmu_ticks period = {period};\n        run->next_unload = fmu_sum(run->next_unload, period);\n"
             );
             due("next_unload", "unload", &then, text);
-        }
-        if self.model.call("step").is_some() {
-            let then = "        const fmu_ticks never = {FMU_NEVER, 0};\n        const bool has_period = run->period.whole > 0 || run->period.part > 0;\n        \
-                 run->next_step = has_period ? fmu_sum(run->next_step, run->period) : never;\n";
-            due("next_step", "step", then, text);
         }
         if self.model.call("poll").is_some() {
             text.push_str("    call_poll(run, now);\n");
