@@ -308,14 +308,13 @@ impl CallWriter<'_> {
         text.push_str("    (void)now;\n    return NULL;\n}\n\n");
     }
 
-    /// Writes the function that calls what is due.
-    fn write_act(&self, text: &mut String) {
-        text.push_str("void fmu_act(fmu_run *run, fmu_ticks now)\n{\n");
+    /// Writes the response to inputs that have changed.
+    fn write_changes(&self, text: &mut String) {
         let mut place = 0;
         for (call, first, count) in watched(self.model) {
             let _ = writeln!(text, "    if (fmu_has_changed(run, {place}, {first}, {count})) {{");
             place += count;
-            match (call, self.exported.system.clone()) {
+            match (call, &self.exported.system) {
                 ("enter", ControlSystem::Modes(modes)) => {
                     let _ = writeln!(
                         text,
@@ -329,6 +328,12 @@ impl CallWriter<'_> {
             }
             text.push_str("    }\n");
         }
+    }
+
+    /// Writes the function that calls what is due.
+    fn write_act(&self, text: &mut String) {
+        text.push_str("void fmu_act(fmu_run *run, fmu_ticks now)\n{\n");
+        self.write_changes(text);
         if !self.model.sensors.is_empty() {
             text.push_str("    take_readings(run);\n");
         }
