@@ -120,6 +120,28 @@ fn element(channel: &Channel, index: usize) -> String {
     if channel.count == 1 { channel.name.clone() } else { format!("{}[{index}]", channel.name) }
 }
 
+/// Returns the expression of an element of an input.
+fn input(channel: &Channel, source: InputSource, index: usize) -> String {
+    let value = |first: usize| match channel.kind {
+        NumberKind::Real => format!("(FMU_REAL)run->values[{}]", first + index),
+        NumberKind::Flag => format!("run->values[{}] != 0.0", first + index),
+        NumberKind::Integer(_) => format!("(int64_t)run->values[{}]", first + index),
+    };
+    match source {
+        InputSource::Values(first) => value(first),
+        InputSource::IsNew(sensor) => format!("is_new[{sensor}]"),
+        InputSource::Reading(sensor, first) => {
+            format!("run->seen[{sensor}].whole < 0 ? (FMU_REAL)NAN : {}", value(first))
+        }
+        InputSource::FieldRate(_, first) => {
+            format!("knows_field_rate(run, now) ? {} : (FMU_REAL)NAN", value(first))
+        }
+        InputSource::Silence(sensor) => format!(
+            "(FMU_REAL)fmu_since(now, run->seen[{sensor}].whole < 0 ? run->start : run->seen[{sensor}])"
+        ),
+    }
+}
+
 impl CallWriter<'_> {
     /// Writes kind, access and start of each variable.
     fn write_variables(&self, text: &mut String) {
@@ -172,7 +194,7 @@ impl CallWriter<'_> {
         );
         for (channel, source) in call.layout.inputs.iter().zip(&call.inputs) {
             for index in 0..channel.count {
-                let value = self.input(channel, *source, index);
+                let value = input(channel, *source, index);
                 let _ = writeln!(text, "    input.{} = {value};", element(channel, index));
             }
         }
@@ -198,28 +220,6 @@ impl CallWriter<'_> {
             );
         }
         text.push_str("}\n\n");
-    }
-
-    /// Returns the expression of an element of an input.
-    fn input(&self, channel: &Channel, source: InputSource, index: usize) -> String {
-        let value = |first: usize| match channel.kind {
-            NumberKind::Real => format!("(FMU_REAL)run->values[{}]", first + index),
-            NumberKind::Flag => format!("run->values[{}] != 0.0", first + index),
-            NumberKind::Integer(_) => format!("(int64_t)run->values[{}]", first + index),
-        };
-        match source {
-            InputSource::Values(first) => value(first),
-            InputSource::IsNew(sensor) => format!("is_new[{sensor}]"),
-            InputSource::Reading(sensor, first) => {
-                format!("run->seen[{sensor}].whole < 0 ? (FMU_REAL)NAN : {}", value(first))
-            }
-            InputSource::FieldRate(_, first) => {
-                format!("knows_field_rate(run, now) ? {} : (FMU_REAL)NAN", value(first))
-            }
-            InputSource::Silence(sensor) => format!(
-                "(FMU_REAL)fmu_since(now, run->seen[{sensor}].whole < 0 ? run->start : run->seen[{sensor}])"
-            ),
-        }
     }
 
     /// Writes the function that takes new readings in the order of their times.
