@@ -9,7 +9,7 @@ use crate::day_balance::SHORT;
 use crate::serve::{rows, serve};
 use crate::util::Dir;
 
-/// Exports a scenario, and compiles a program of `clients/c` around it with definitions of macros; `None` on a machine without a
+/// Exports a scenario, with its options, and compiles a program of `clients/c` around it with definitions of macros; `None` on a machine without a
 /// compiler, which is reported.
 fn flight_program(
     dir: &Dir,
@@ -18,7 +18,7 @@ fn flight_program(
     program: &str,
     definitions: &[&str],
 ) -> Option<PathBuf> {
-    dir.run(&format!("export-c {scenario}.toml -o flight --name {prefix} --calls 10")).exits(0);
+    dir.run(&format!("export-c {scenario} -o flight --name {prefix} --calls 10")).exits(0);
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../clients/c");
     let (made, flight) = (dir.path(program), dir.path("flight"));
     let mut compiler = Program::new("cc");
@@ -48,7 +48,9 @@ fn fly(program: &Path, server: &str, faults: Faults, more: &[&str]) -> String {
 #[test]
 fn exported_code_gives_the_rows_of_simulate() {
     let dir = Dir::with(&["earth-observer"]);
-    let Some(program) = flight_program(&dir, "earth-observer", "aocs", "earth_observer", &[]) else { return };
+    let Some(program) = flight_program(&dir, "earth-observer.toml", "aocs", "earth_observer", &[]) else {
+        return;
+    };
     let said = rows_are_equal(&dir, "earth-observer.toml --set duration=99.9", "0.05", &program, 0.01);
     assert_eq!(said, "1998 cycles, complete\n");
 }
@@ -103,12 +105,12 @@ const MODES_SOON: [(&str, &str); 4] = [
 fn exported_modes_give_the_rows_of_simulate() {
     for (scenario, keys, tracker, changes) in CUBESATS {
         let dir = Dir::with(&[scenario]);
-        let file = format!("{scenario}.toml");
         if scenario == "cubesat-day" {
-            dir.write(&file, changed(&dir.text(&file), &MODES_SOON));
+            dir.write("cubesat-day.toml", changed(&dir.text("cubesat-day.toml"), &MODES_SOON));
         }
-        let Some(program) = flight_program(&dir, scenario, "sat", "cubesat", &[tracker]) else { return };
-        let said = rows_are_equal(&dir, &format!("{file} {keys}"), "0.5", &program, 0.004);
+        let shortened = format!("{scenario}.toml {keys}");
+        let Some(program) = flight_program(&dir, &shortened, "sat", "cubesat", &[tracker]) else { return };
+        let said = rows_are_equal(&dir, &shortened, "0.5", &program, 0.004);
         let modes: Vec<_> =
             said.lines().filter_map(|line| line.split_once(" at ")).map(|(mode, _)| mode).collect();
         assert_eq!(modes, changes, "{scenario}: {said}");
@@ -151,7 +153,7 @@ fn fly_cubesat(changes: &[(&str, &str)], false_at: f64, failure: &str) -> String
     let dir = Dir::with(&["cubesat-day"]);
     let text = changed(&dir.text("cubesat-day.toml"), changes);
     dir.write("cubesat-day.toml", with_false_readings(&text, false_at));
-    let Some(program) = flight_program(&dir, "cubesat-day", "sat", "cubesat", &[]) else {
+    let Some(program) = flight_program(&dir, "cubesat-day.toml", "sat", "cubesat", &[]) else {
         return String::new();
     };
     let (server, _, address) = serve(&dir, "cubesat-day.toml --period 0.5 --log none --timeout 60");

@@ -154,7 +154,9 @@ impl VariableTable {
         let telemetry = simulation.telemetry_layout(scenario);
         self.add_readings(&telemetry.sensors);
         for field in &telemetry.law_inputs {
-            let is_new = !observed.iter().any(|known| known.path() == field.path());
+            // The readings of conditions are NaN but at their tests.
+            let is_known = observed.iter().any(|known| known.path() == field.path());
+            let is_new = !is_known && field.path() != "conditions.readings";
             for index in 0..field.width() {
                 let quantity = Quantity::LawInput(self.law_inputs);
                 self.law_inputs += 1;

@@ -79,7 +79,7 @@ impl RunView<'_> {
 
     /// Returns the readings of all conditions; NaN without a test at this instant.
     pub fn compared_readings(&self) -> Vec<f64> {
-        let count = self.modes.map_or(0, |sequence| sequence.reading_count());
+        let count = self.modes.map_or(0, ModeSequence::reading_count);
         let test = self.tested.filter(|test| test.at == self.now);
         test.map_or_else(|| vec![f64::NAN; count], |test| test.readings.clone())
     }

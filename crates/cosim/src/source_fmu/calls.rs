@@ -120,6 +120,28 @@ fn element(channel: &Channel, index: usize) -> String {
     if channel.count == 1 { channel.name.clone() } else { format!("{}[{index}]", channel.name) }
 }
 
+/// Returns the expression of an element of an input.
+fn input(channel: &Channel, source: InputSource, index: usize) -> String {
+    let value = |first: usize| match channel.kind {
+        NumberKind::Real => format!("(FMU_REAL)run->values[{}]", first + index),
+        NumberKind::Flag => format!("run->values[{}] != 0.0", first + index),
+        NumberKind::Integer(_) => format!("(int64_t)run->values[{}]", first + index),
+    };
+    match source {
+        InputSource::Values(first) => value(first),
+        InputSource::IsNew(sensor) => format!("is_new[{sensor}]"),
+        InputSource::Reading(sensor, first) => {
+            format!("run->seen[{sensor}].whole < 0 ? (FMU_REAL)NAN : {}", value(first))
+        }
+        InputSource::FieldRate(_, first) => {
+            format!("knows_field_rate(run, now) ? {} : (FMU_REAL)NAN", value(first))
+        }
+        InputSource::Silence(sensor) => format!(
+            "(FMU_REAL)fmu_since(now, run->seen[{sensor}].whole < 0 ? run->start : run->seen[{sensor}])"
+        ),
+    }
+}
+
 impl CallWriter<'_> {
     /// Writes kind, access and start of each variable.
     fn write_variables(&self, text: &mut String) {
@@ -172,7 +194,7 @@ impl CallWriter<'_> {
         );
         for (channel, source) in call.layout.inputs.iter().zip(&call.inputs) {
             for index in 0..channel.count {
-                let value = self.input(channel, *source, index);
+                let value = input(channel, *source, index);
                 let _ = writeln!(text, "    input.{} = {value};", element(channel, index));
             }
         }
@@ -198,28 +220,6 @@ impl CallWriter<'_> {
             );
         }
         text.push_str("}\n\n");
-    }
-
-    /// Returns the expression of an element of an input.
-    fn input(&self, channel: &Channel, source: InputSource, index: usize) -> String {
-        let value = |first: usize| match channel.kind {
-            NumberKind::Real => format!("(FMU_REAL)run->values[{}]", first + index),
-            NumberKind::Flag => format!("run->values[{}] != 0.0", first + index),
-            NumberKind::Integer(_) => format!("(int64_t)run->values[{}]", first + index),
-        };
-        match source {
-            InputSource::Values(first) => value(first),
-            InputSource::IsNew(sensor) => format!("is_new[{sensor}]"),
-            InputSource::Reading(sensor, first) => {
-                format!("run->seen[{sensor}].whole < 0 ? (FMU_REAL)NAN : {}", value(first))
-            }
-            InputSource::FieldRate(_, first) => {
-                format!("knows_field_rate(run, now) ? {} : (FMU_REAL)NAN", value(first))
-            }
-            InputSource::Silence(sensor) => format!(
-                "(FMU_REAL)fmu_since(now, run->seen[{sensor}].whole < 0 ? run->start : run->seen[{sensor}])"
-            ),
-        }
     }
 
     /// Writes the function that takes new readings in the order of their times.
@@ -308,14 +308,13 @@ impl CallWriter<'_> {
         text.push_str("    (void)now;\n    return NULL;\n}\n\n");
     }
 
-    /// Writes the function that calls what is due.
-    fn write_act(&self, text: &mut String) {
-        text.push_str("void fmu_act(fmu_run *run, fmu_ticks now)\n{\n");
+    /// Writes the response to inputs that have changed.
+    fn write_changes(&self, text: &mut String) {
         let mut place = 0;
         for (call, first, count) in watched(self.model) {
             let _ = writeln!(text, "    if (fmu_has_changed(run, {place}, {first}, {count})) {{");
             place += count;
-            match (call, self.exported.system.clone()) {
+            match (call, &self.exported.system) {
                 ("enter", ControlSystem::Modes(modes)) => {
                     let _ = writeln!(
                         text,
@@ -329,6 +328,12 @@ impl CallWriter<'_> {
             }
             text.push_str("    }\n");
         }
+    }
+
+    /// Writes the function that calls what is due.
+    fn write_act(&self, text: &mut String) {
+        text.push_str("void fmu_act(fmu_run *run, fmu_ticks now)\n{\n");
+        self.write_changes(text);
         if !self.model.sensors.is_empty() {
             text.push_str("    take_readings(run);\n");
         }
@@ -349,17 +354,18 @@ impl CallWriter<'_> {
         if self.model.call("supervise").is_some() {
             due("next_test", "supervise", "", text);
         }
+        if self.model.call("step").is_some() {
+            let then = "        const fmu_ticks never = {FMU_NEVER, 0};\n        const bool has_period = run->period.whole > 0 || run->period.part > 0;\n        \
+                 run->next_step = has_period ? fmu_sum(run->next_step, run->period) : never;\n";
+            due("next_step", "step", then, text);
+        }
+        // As in a run, where the actuator takes the commands first.
         if let Some(unload) = self.model.call("unload") {
             let period = ticks(Span::from_seconds(unload.layout.period.unwrap_or(1.0)));
             let then = format!(
                 "        const fmu_ticks period = {period};\n        run->next_unload = fmu_sum(run->next_unload, period);\n"
             );
             due("next_unload", "unload", &then, text);
-        }
-        if self.model.call("step").is_some() {
-            let then = "        const fmu_ticks never = {FMU_NEVER, 0};\n        const bool has_period = run->period.whole > 0 || run->period.part > 0;\n        \
-                 run->next_step = has_period ? fmu_sum(run->next_step, run->period) : never;\n";
-            due("next_step", "step", then, text);
         }
         if self.model.call("poll").is_some() {
             text.push_str("    call_poll(run, now);\n");

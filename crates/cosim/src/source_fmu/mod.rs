@@ -4,6 +4,8 @@ mod bindings;
 mod calls;
 mod variables;
 
+use std::path::Path;
+
 use flexsc_core::Scenario;
 use flexsc_export_c::package::{ExportError, ExportOrigin, control_sources};
 
@@ -69,8 +71,11 @@ pub fn source_fmu_bytes(
     add("fmu_instance.h", include_str!("files/fmu_instance.h"));
     add("fmu_instance.c", include_str!("files/fmu_instance.c"));
     add(interface_source.0, interface_source.1);
-    let compiled: Vec<String> =
-        sources.iter().map(|(name, _)| name.clone()).filter(|name| name.ends_with(".c")).collect();
+    let compiled: Vec<String> = sources
+        .iter()
+        .map(|(name, _)| name.clone())
+        .filter(|name| Path::new(name).extension().is_some_and(|own| own == "c"))
+        .collect();
     if version == FmiVersion::V3 {
         sources.push(("buildDescription.xml".to_owned(), build_description(prefix, &compiled).into_bytes()));
     }

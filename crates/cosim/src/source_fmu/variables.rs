@@ -36,11 +36,10 @@ impl<'a> NamedValues<'a> {
 /// Returns the value reference of the first variable of a name.
 pub fn find(table: &VariableTable, name: &str) -> Option<usize> {
     let variables = table.variables();
-    let place = variables.iter().position(|of| {
+    variables.iter().position(|of| {
         let rest = of.name.strip_prefix(name);
         rest.is_some_and(|rest| rest.is_empty() || rest == "[1]")
-    });
-    place
+    })
 }
 
 /// Returns the value reference of the first of these variables, which are added if there are none of the name.
