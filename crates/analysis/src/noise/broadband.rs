@@ -32,7 +32,7 @@ const NEAR: f64 = 2.0;
 /// Difference of the two rules, relative to the whole, below which an interval counts: the finer one is then far closer.
 const DIFFERENCE: f64 = 1e-6;
 /// Part of what the measurements see by all aliases of resonances, below which one has no breaks of its own.
-const SMALL: f64 = 1e-8;
+const SMALL: f64 = 1e-10;
 /// Largest number of halvings of an interval, and of intervals.
 const HALVINGS: usize = 12;
 const MOST_INTERVALS: usize = 4000;
