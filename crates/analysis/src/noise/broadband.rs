@@ -17,11 +17,11 @@ use super::lines::LineLoop;
 use super::measured_loads::VibrationLoad;
 use super::source_motion::SourceMotion;
 use super::spectral_line::SpectralLine;
-use super::transfer::{LoadResponse, LoopTransfer, Resonance};
+use super::transfer::{LoadResponse, LoopResonance, LoopTransfer};
 
 /// Lowest frequency, relative to the lowest corner and resonance, and highest, relative to the highest.
 const LOWEST: f64 = 1e-3;
-const HIGHEST: f64 = 12.0;
+const HIGHEST: f64 = 30.0;
 /// Lowest frequency, relative to the lowest corner: below it a free body has no larger part of the motion than this.
 const LOWEST_PART: f64 = 1e-5;
 /// Ratio of the distances of breaks from a resonance, in half widths, and ratio of frequencies of breaks elsewhere.
@@ -32,7 +32,7 @@ const NEAR: f64 = 2.0;
 /// Difference of the two rules, relative to the whole, below which an interval counts: the finer one is then far closer.
 const DIFFERENCE: f64 = 1e-6;
 /// Part of what the measurements see by all aliases of resonances, below which one has no breaks of its own.
-const SMALL: f64 = 1e-8;
+const SMALL: f64 = 1e-10;
 /// Largest number of halvings of an interval, and of intervals.
 const HALVINGS: usize = 12;
 const MOST_INTERVALS: usize = 4000;
@@ -256,8 +256,8 @@ impl Integral<'_> {
     }
 
     /// Returns those aliases by which the measurements see a part of all that is not small.
-    fn measured(&self, aliases: Vec<(Resonance, f64)>) -> Vec<(Resonance, f64)> {
-        let power = |([frequency, width], _): &(Resonance, f64)| -> Vec<f64> {
+    fn measured(&self, aliases: Vec<(LoopResonance, f64)>) -> Vec<(LoopResonance, f64)> {
+        let power = |([frequency, width], _): &(LoopResonance, f64)| -> Vec<f64> {
             let Some(squares) = self.transfer.sensed_squares(*frequency) else { return Vec::new() };
             let mut sums = vec![0.0; squares.nrows()];
             for source in &self.sources {

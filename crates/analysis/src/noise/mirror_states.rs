@@ -3,7 +3,7 @@
 use flexsc_numerics::attitude::Vector;
 use nalgebra::{DMatrix, RowDVector};
 
-use super::transfer::ComplexLine;
+use super::spectral_line::ComplexLine;
 use crate::fine_mirror::{MirrorLoop, mirrors};
 use crate::linear_model::Signal;
 use crate::margins::frequency_response::modulus;

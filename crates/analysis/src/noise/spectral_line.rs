@@ -1,7 +1,10 @@
 //! Lines of outputs, and the loads that make them.
 
-use nalgebra::DVector;
+use nalgebra::{Complex, DVector};
 use serde::Serialize;
+
+/// Frequency of a line (rad/s, with a sign) and its complex amplitude.
+pub type ComplexLine = (f64, Complex<f64>);
 
 /// Load on the states of the body, cosine cos w t + sine sin w t, as columns of their rate of change.
 #[derive(Clone, Debug, PartialEq)]

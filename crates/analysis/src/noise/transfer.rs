@@ -7,14 +7,14 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::lines::LineLoop;
 use super::measured_loads::{MeasuredPart, VibrationLoad};
-use super::spectral_line::SineLoad;
+use super::spectral_line::{ComplexLine, SineLoad};
 use crate::eigenvalues::eigenvalues;
 use crate::linear_model::Signal;
 use crate::margins::frequency_response::{FrequencyResponse, modulus};
 use crate::open_loop::{OpenLoop, TransferMatrices};
 
 /// Frequency and half width of a resonance (rad/s).
-pub type Resonance = [f64; 2];
+pub type LoopResonance = [f64; 2];
 
 /// Distance of two resonances, relative to the half width of the narrower one, below which they are one.
 const APART: f64 = 0.5;
@@ -41,9 +41,6 @@ pub struct LoopTransfer<'a> {
     /// Distance of the frequencies that have the same aliases (rad/s).
     pub turn: f64,
 }
-
-/// Frequency of a line (rad/s, with a sign) and its complex amplitude.
-pub type ComplexLine = (f64, Complex<f64>);
 
 /// Lines of each output under a unit of one load.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,7 +101,7 @@ impl<'a> LoopTransfer<'a> {
 
     /// Returns the resonances (frequency, half width, rad/s) that a load up to a frequency meets: of body and loop, and then as aliases of
     /// the loop, each with the multiple of the loop's rate beside which it lies.
-    pub fn resonances_below(&self, highest: f64) -> (Vec<Resonance>, Vec<(Resonance, f64)>) {
+    pub fn resonances_below(&self, highest: f64) -> (Vec<LoopResonance>, Vec<(LoopResonance, f64)>) {
         let (body, looped) = self.resonances.split_at(self.of_body);
         let folded = |frequency: f64| (frequency - self.turn * libm::round(frequency / self.turn)).abs();
         // Those of the modes are narrow, and hardly answer at their aliases.
