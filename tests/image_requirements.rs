@@ -172,8 +172,8 @@ fn contrasts_that_do_not_hold_are_refused() {
         assert!(!dir.has("figures"));
     }
     let start = study("");
-    let sight = &start[start.find("[[line_of_sight]]").expect("one")..start.find("[[sensor]]").unwrap_or(0)];
-    let sight = if sight.is_empty() { panic!("no line of sight") } else { sight };
+    let [from, to] = ["[[line_of_sight]]", "[law.attitude]"].map(|head| start.find(head).expect("a table"));
+    let sight = &start[from..to];
     dir.write("bench.toml", start.replace(sight, ""));
     dir.run("spectrum bench.toml").exits(2).says(&["`mtf` needs a `[[line_of_sight]]`"]);
 }
