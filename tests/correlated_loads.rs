@@ -57,11 +57,20 @@ fn runs_have_correlated_forces() {
 fn correlations_that_are_none_are_refused() {
     let dir = Dir::new();
     for (correlation, why) in [
-        ("correlation = [[1, 0.9, 0.9], [0.9, 1, -0.9], [0.9, -0.9, 1]]", "must be positive semidefinite, or no components have it: its least eigenvalue is -0.8000"),
-        ("correlation = [[1, 0.5, 0], [0.4, 1, 0], [0, 0, 1]]", "must be symmetric, got 0.5 and 0.4 in rows 1 and 2"),
+        (
+            "correlation = [[1, 0.9, 0.9], [0.9, 1, -0.9], [0.9, -0.9, 1]]",
+            "must be positive semidefinite, or no components have it: its least eigenvalue is -0.8000",
+        ),
+        (
+            "correlation = [[1, 0.5, 0], [0.4, 1, 0], [0, 0, 1]]",
+            "must be symmetric, got 0.5 and 0.4 in rows 1 and 2",
+        ),
         ("correlation = [[2, 0, 0], [0, 1, 0], [0, 0, 1]]", "must have 1 on the diagonal, got 2 in row 1"),
         ("correlation = [[1, 0], [0, 1]]", "must have three rows of three numbers, or six of six"),
-        ("correlation = [[1, 0, 0], [0, 1], [0, 0, 1]]", "must have three rows of three numbers, or six of six"),
+        (
+            "correlation = [[1, 0, 0], [0, 1], [0, 0, 1]]",
+            "must have three rows of three numbers, or six of six",
+        ),
     ] {
         dir.write("bench.toml", study(0.001, correlation));
         dir.run("check bench.toml").exits(2).says(&["disturbance[0].density.correlation", why]);

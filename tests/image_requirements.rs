@@ -102,7 +102,9 @@ fn circles_hold_parts_of_the_energy() {
     let sum = number(&circle["major_rms_rad"]).hypot(number(&circle["minor_rms_rad"]));
     let about = |place: usize| number(&brief["outputs"][place]["window"]["rpe_uniform"]);
     let sights: Vec<usize> = (0..brief["outputs"].as_array().expect("outputs").len())
-        .filter(|place| brief["outputs"][*place]["output"].as_str().is_some_and(|own| own.starts_with("line")))
+        .filter(|place| {
+            brief["outputs"][*place]["output"].as_str().is_some_and(|own| own.starts_with("line"))
+        })
         .collect();
     assert!(jitter.is_number() && sights.len() == 2, "{sights:?}");
     agree("jitter", sum, about(sights[0]).hypot(about(sights[1])), 1e-6);
@@ -111,7 +113,8 @@ fn circles_hold_parts_of_the_energy() {
 #[test]
 fn linear_tools_judge_a_contrast() {
     let dir = Dir::new();
-    let uncertain = "[uncertain]\n\"disturbance[1].lines.frequency\" = { uniform = [\"48 Hz\", \"54 Hz\"] }\n";
+    let uncertain =
+        "[uncertain]\n\"disturbance[1].lines.frequency\" = { uniform = [\"48 Hz\", \"54 Hz\"] }\n";
     dir.write("bench.toml", study("axis = \"x\"") + uncertain);
     let budget = dir.run("budget bench.toml --json").exits(3).json();
     agree("budget", number(&budget["contrasts"][0]["mtf"]), 0.746_880_698, 2e-6);
@@ -142,13 +145,25 @@ fn contrasts_that_do_not_hold_are_refused() {
         ("least = 0.8", "limit = 0.8", "`requirement[0].limit` is a largest value"),
         ("least = 0.8", "", "`requirement[0].least` is missing"),
         ("least = 0.8", "least = 0.8\nexposure = 0", "`requirement[0].exposure`: must be a positive number"),
-        ("least = 0.8", "least = 0.8\nexposure = 1e9", "requirement[0].exposure: must be positive and at most"),
+        (
+            "least = 0.8",
+            "least = 0.8\nexposure = 1e9",
+            "requirement[0].exposure: must be positive and at most",
+        ),
         ("least = 0.8", "least = 0.8\nwindow = 1", "`requirement[0].window` is that of an index"),
         ("least = 0.8", "least = 0.8\naxis = \"z\"", "requirement[0].axis: is along the line of sight"),
         ("7.27", "-7.27", "`requirement[0].spatial_frequency`: must be a positive number"),
         ("cycles/arcsec", "cycles/mm", "`requirement[0].spatial_frequency`"),
-        ("point = \"detector\"\nspatial", "point = \"m9\"\nspatial", "`requirement[0].point` must be the point"),
-        ("\"mtf\"", "\"line_of_sight\"\nlimit = 1", "`requirement[0].spatial_frequency` is for `quantity = \"mtf\"`"),
+        (
+            "point = \"detector\"\nspatial",
+            "point = \"m9\"\nspatial",
+            "`requirement[0].point` must be the point",
+        ),
+        (
+            "\"mtf\"",
+            "\"line_of_sight\"\nlimit = 1",
+            "`requirement[0].spatial_frequency` is for `quantity = \"mtf\"`",
+        ),
     ] {
         let text = study("");
         assert!(text.contains(from), "{from}");
@@ -157,8 +172,8 @@ fn contrasts_that_do_not_hold_are_refused() {
         assert!(!dir.has("figures"));
     }
     let start = study("");
-    let sight = &start[start.find("[[line_of_sight]]").expect("one")..start.find("[[sensor]]").unwrap_or(0)];
-    let sight = if sight.is_empty() { panic!("no line of sight") } else { sight };
+    let [from, to] = ["[[line_of_sight]]", "[law.attitude]"].map(|head| start.find(head).expect("a table"));
+    let sight = &start[from..to];
     dir.write("bench.toml", start.replace(sight, ""));
     dir.run("spectrum bench.toml").exits(2).says(&["`mtf` needs a `[[line_of_sight]]`"]);
 }

@@ -74,7 +74,10 @@ fn a_measured_path_takes_the_place_of_the_model() {
     let arcsec = PI / 648_000.0;
     for (path, table) in [
         ("force = \"x\", table = \"h.csv\"", measured("frequency,real,imaginary", |h| [h.re, h.im])),
-        ("force = \"x\", phase = \"rad\", table = \"h.csv\"", measured("frequency,magnitude,phase", polar(1.0))),
+        (
+            "force = \"x\", phase = \"rad\", table = \"h.csv\"",
+            measured("frequency,magnitude,phase", polar(1.0)),
+        ),
         (
             "force = \"x\", phase = \"deg\", unit = \"arcsec/N\", table = \"h.csv\"",
             measured("# of a shaker", |h| [h.norm() / arcsec, h.arg() * 360.0 / TAU]),
@@ -102,9 +105,21 @@ fn measured_paths_that_do_not_hold_are_refused() {
     let dir = Dir::new();
     let good = "frequency,real,imaginary\n10,1e-8,0\n20,1e-8,0\n";
     for (path, table, words) in [
-        ("force = \"x\"", "frequency,real\n10,1\n", &["measured[0].table", "h.csv", "line 1: must have a frequency (Hz)"][..]),
-        ("force = \"x\"", "frequency,real,imaginary\n10,1,0\n9,1,0\n", &["line 3: must have increasing positive frequencies, got 9 Hz"]),
-        ("force = \"x\", phase = \"grad\"", good, &["measured[0].phase", "must be `rad` or `deg`, got `grad`"]),
+        (
+            "force = \"x\"",
+            "frequency,real\n10,1\n",
+            &["measured[0].table", "h.csv", "line 1: must have a frequency (Hz)"][..],
+        ),
+        (
+            "force = \"x\"",
+            "frequency,real,imaginary\n10,1,0\n9,1,0\n",
+            &["line 3: must have increasing positive frequencies, got 9 Hz"],
+        ),
+        (
+            "force = \"x\", phase = \"grad\"",
+            good,
+            &["measured[0].phase", "must be `rad` or `deg`, got `grad`"],
+        ),
         ("force = \"x\", phase = \"deg\"", good, &["measured[0].phase", "real and imaginary part"]),
         ("force = \"x\"", "frequency,magnitude,phase\n1,1,0\n2,1,0\n", &["measured[0].phase", "is missing"]),
         ("force = \"x\", unit = \"m/N\"", good, &["measured[0].unit", "such as rad/N, got `m/N`"]),
@@ -118,8 +133,15 @@ fn measured_paths_that_do_not_hold_are_refused() {
         assert!(!dir.has("figures"));
     }
     dir.write("h.csv", good);
-    dir.write("bench.toml", study("force = \"x\", table = \"h.csv\"").replace("about = \"x\"", "about = \"z\""));
-    dir.run("spectrum bench.toml").exits(2).says(&["bench.toml:", "measured[0].about", "along the line of sight"]);
+    dir.write(
+        "bench.toml",
+        study("force = \"x\", table = \"h.csv\"").replace("about = \"x\"", "about = \"z\""),
+    );
+    dir.run("spectrum bench.toml").exits(2).says(&[
+        "bench.toml:",
+        "measured[0].about",
+        "along the line of sight",
+    ]);
     let text = study("force = \"x\", table = \"h.csv\"");
     dir.write("bench.toml", text.replacen("point = \"rotor\", about", "point = \"stator\", about", 1));
     dir.run("spectrum bench.toml").exits(2).says(&["measured[0].point", "must be one of the body's points"]);

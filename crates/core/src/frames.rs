@@ -92,10 +92,13 @@ impl Frames {
             .map_err(FrameFault::Scenario)?;
         let exposure = request.exposure.unwrap_or(1.0 / request.rate);
         if !(request.rate > 0.0 && request.rate.is_finite()) {
-            return Err(FrameFault::Request(format!("frames must be a positive rate, got {} Hz", request.rate)));
+            return Err(FrameFault::Request(format!(
+                "frames must be a positive rate, got {} Hz",
+                request.rate
+            )));
         }
         if !(exposure > 0.0 && exposure * request.rate <= 1.0 + ROUNDING) {
-            let [frame, got] = [1.0 / request.rate, exposure].map(reader_units::time);
+            let [frame, got] = [1.0 / request.rate, exposure].map(reader_units::time_span);
             let why = format!("exposure must be positive and at most a frame, {frame}, got {got}");
             return Err(FrameFault::Request(why));
         }
@@ -124,11 +127,16 @@ struct FrameColumns {
 
 impl FrameColumns {
     /// Adds the frames of a line of sight.
-    fn add(&mut self, line: usize, own: &SampledLine, (rate, exposure): (f64, f64)) -> Result<(), FrameFault> {
+    fn add(
+        &mut self,
+        line: usize,
+        own: &SampledLine,
+        (rate, exposure): (f64, f64),
+    ) -> Result<(), FrameFault> {
         let (Some(first), Some(last)) = (own.times.first(), own.times.last()) else { return Ok(()) };
         let period = (last - first) / (own.times.len().max(2) - 1) as f64;
         if exposure < LEAST_PERIODS * period * (1.0 - ROUNDING) {
-            let [least, got] = [LEAST_PERIODS * period, exposure].map(reader_units::time);
+            let [least, got] = [LEAST_PERIODS * period, exposure].map(reader_units::time_span);
             let why = format!("exposure must have two samples of line_of_sight[{line}], {least}, got {got}");
             return Err(FrameFault::Request(why));
         }
@@ -175,7 +183,8 @@ impl SampledLine {
                 self.errors[next - 1][axis] * (1.0 - part) + self.errors[next][axis] * part
             })
         };
-        let inner = self.times.partition_point(|own| *own <= from)..self.times.partition_point(|own| *own < to);
+        let inner =
+            self.times.partition_point(|own| *own <= from)..self.times.partition_point(|own| *own < to);
         let mut knots = vec![(from, at(from))];
         knots.extend(inner.map(|place| (self.times[place], self.errors[place])));
         knots.push((to, at(to)));
@@ -261,7 +270,8 @@ fn known_lines(scenario: &Scenario, log: &Log) -> Vec<(String, f64)> {
     let mut found = Vec::new();
     for (index, lines) in scenario.disturbance.iter().enumerate() {
         for (number, harmonic) in lines.lines.iter().flat_map(|own| own.harmonics.iter().enumerate()) {
-            let multiple = lines.lines.as_ref().map_or(1.0, |own| own.multiple(harmonic) * own.frequency.get());
+            let multiple =
+                lines.lines.as_ref().map_or(1.0, |own| own.multiple(harmonic) * own.frequency.get());
             found.push((format!("disturbance[{index}].lines.harmonics[{number}]"), multiple / TAU));
         }
     }

@@ -14,7 +14,8 @@ pub const POLAR: &[&str] = &["frequency", "magnitude", "phase"];
 
 impl TableKind for ResponseRows {
     const NAME: &'static str = "ResponseTable";
-    const ROWS: &'static str = "rows of frequency (Hz) and response, as real and imaginary part or as magnitude and phase";
+    const ROWS: &'static str =
+        "rows of frequency (Hz) and response, as real and imaginary part or as magnitude and phase";
     const ROW: &'static str = "a frequency (Hz), and a real and an imaginary part or a magnitude and a phase";
     const HEADERS: &'static [&'static [&'static str]] = &[&["frequency", "real", "imaginary"], POLAR];
     const MOST: usize = 100_000;

@@ -79,7 +79,8 @@ impl Requirement {
             .map(|(key, _)| key)
             .collect();
         let (Some(frequency), Some(least)) = (self.spatial_frequency, self.least) else {
-            let (first, others) = absent.split_first().map_or(("least", &[][..]), |(first, rest)| (*first, rest));
+            let (first, others) =
+                absent.split_first().map_or(("least", &[][..]), |(first, rest)| (*first, rest));
             let also = others.first().map_or_else(String::new, |other| format!(", and so is `{other}`"));
             let why = format!(
                 "is missing{also}: the contrast `mtf` is at least `least` at a `spatial_frequency`, such as \"0.5 cycles/arcsec\""

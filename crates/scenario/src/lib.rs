@@ -205,8 +205,7 @@ impl Scenario {
     fn resolved(written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
         let mut study = ResolvedScenario::resolve(&written, &model)?;
         let mut errors = Vec::new();
-        let checked =
-            requirement_checks::assessed(&written, &model, study.assessment_period, &mut errors);
+        let checked = requirement_checks::assessed(&written, &model, study.assessment_period, &mut errors);
         (study.requirements, study.contrasts) = (checked.of_runs, checked.of_contrast);
         match errors.into_iter().next() {
             None => {

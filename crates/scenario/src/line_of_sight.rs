@@ -157,7 +157,8 @@ impl LineOfSight {
         let path = |own: &MeasuredPath| (own.point.clone(), own.part(), own.about as usize);
         let fault = |(index, own): (usize, &MeasuredPath)| {
             if body.point(&own.point).is_none() {
-                let why = format!("must be one of the body's points, {}, got `{}`", body.point_names(), own.point);
+                let why =
+                    format!("must be one of the body's points, {}, got `{}`", body.point_names(), own.point);
                 return Some(ConfigError::new("point", why));
             }
             if direction[own.about as usize].abs() > 1.0 - 1e-12 {
@@ -165,7 +166,8 @@ impl LineOfSight {
                 return Some(ConfigError::new("about", why));
             }
             let is_known = self.measured[..index].iter().any(|before| path(before) == path(own));
-            let why = "has a path already, from this component of the load to the line of sight about this axis";
+            let why =
+                "has a path already, from this component of the load to the line of sight about this axis";
             own.validate().or_else(|| is_known.then(|| ConfigError::new("point", why)))
         };
         let mut all = self.measured.iter().enumerate();

@@ -61,7 +61,14 @@ impl MeasuredPath {
             return refused("force", "must be given, or `torque`: the axis of one of them".to_owned());
         }
         if let Some(unit) = self.unit.as_ref().filter(|_| self.size().is_none()) {
-            return refused("unit", format!("must be an angle per {}, such as rad/{}, got `{unit}`", self.load_unit(), self.load_unit()));
+            return refused(
+                "unit",
+                format!(
+                    "must be an angle per {}, such as rad/{}, got `{unit}`",
+                    self.load_unit(),
+                    self.load_unit()
+                ),
+            );
         }
         let is_polar = self.table.header().map(|header| header == POLAR);
         match (&self.phase, is_polar) {
@@ -100,10 +107,9 @@ impl MeasuredPath {
             None => None,
         };
         let response = |row: &Vec<f64>| match angle {
-            Some(angle) => [
-                size * row[1] * libm::cos(angle * row[2]),
-                size * row[1] * libm::sin(angle * row[2]),
-            ],
+            Some(angle) => {
+                [size * row[1] * libm::cos(angle * row[2]), size * row[1] * libm::sin(angle * row[2])]
+            }
             None => [size * row[1], size * row[2]],
         };
         self.table.rows().iter().map(|row| (TAU * row[0], response(row))).collect()

@@ -381,8 +381,11 @@ fn metric_source(
         metric_descriptions::list_element(name).map_or((name, None), |(list, index)| (list, Some(index)));
     let known = metric_descriptions::meaning(list, Some(model));
     let Some(meaning) = known else {
-        let names: Vec<&str> =
-            SAMPLED.into_iter().chain([MTF]).chain(metric_descriptions::ALL.iter().map(|meaning| meaning.name)).collect();
+        let names: Vec<&str> = SAMPLED
+            .into_iter()
+            .chain([MTF])
+            .chain(metric_descriptions::ALL.iter().map(|meaning| meaning.name))
+            .collect();
         let hint = nearest(name, &names).map_or_else(
             || "`flexsc schema --metrics` lists them".to_owned(),
             |close| format!("did you mean `{close}`?"),

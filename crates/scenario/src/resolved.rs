@@ -23,7 +23,9 @@ use flexsc_spacecraft::disturbance::Disturbance;
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::{Cholesky, Matrix3};
 
-use super::{AppendageDrives, AssessedRequirement, ContrastRequirement, Scenario, ScenarioSpec, plate_mounts};
+use super::{
+    AppendageDrives, AssessedRequirement, ContrastRequirement, Scenario, ScenarioSpec, plate_mounts,
+};
 
 /// Tolerance for rounded shares.
 const ROUNDING: f64 = 1e-9;

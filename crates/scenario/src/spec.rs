@@ -285,7 +285,8 @@ impl ScenarioSpec {
     /// Reads the files of the measured paths to lines of sight.
     pub(super) fn read_measured_paths(&mut self, directory: &Path) -> Option<ConfigError> {
         let lines = self.line_of_sight.iter_mut().enumerate();
-        let paths = lines.flat_map(|(line, own)| own.measured.iter_mut().enumerate().map(move |path| (line, path)));
+        let paths =
+            lines.flat_map(|(line, own)| own.measured.iter_mut().enumerate().map(move |path| (line, path)));
         paths.into_iter().find_map(|(line, (index, path))| {
             Some(path.read(directory)?.within(&format!("line_of_sight[{line}].measured[{index}]")))
         })

@@ -164,7 +164,9 @@ impl LoadDensity {
         }
         let least = self.correlations().symmetric_eigenvalues().min();
         (least < LEAST).then(|| {
-            format!("must be positive semidefinite, or no components have it: its least eigenvalue is {least:.4}")
+            format!(
+                "must be positive semidefinite, or no components have it: its least eigenvalue is {least:.4}"
+            )
         })
     }
 

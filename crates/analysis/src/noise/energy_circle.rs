@@ -115,7 +115,8 @@ impl EnergyCircle {
 
 /// Returns the two larger eigenvalues of a covariance: across the line of sight, along which the third is 0.
 fn largest_eigenvalues(covariance: &Matrix3<f64>) -> [f64; 2] {
-    let mut values: Vec<f64> = covariance.symmetric_eigenvalues().iter().map(|value| value.max(0.0)).collect();
+    let mut values: Vec<f64> =
+        covariance.symmetric_eigenvalues().iter().map(|value| value.max(0.0)).collect();
     values.sort_by(|a, b| b.total_cmp(a));
     [values[0], values[1]]
 }

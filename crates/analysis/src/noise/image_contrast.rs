@@ -70,8 +70,7 @@ impl ImageBlur {
 
     /// Returns the blur of an exposure (s) by a variance (rad²) over the time from its middle, and by motion up to a frequency (rad/s).
     pub fn by_variance(exposure: Option<f64>, fastest: f64, variance: impl Fn(f64) -> f64) -> Self {
-        let instant =
-            |(time, part): (f64, f64)| BlurInstant { time, part, variances: vec![variance(time)] };
+        let instant = |(time, part): (f64, f64)| BlurInstant { time, part, variances: vec![variance(time)] };
         let instants = instants(exposure, fastest).into_iter().map(instant).collect();
         Self { exposure, instants, lines: Vec::new() }
     }
@@ -83,12 +82,7 @@ impl ImageBlur {
 
     /// Returns the contrast at a spatial frequency (cycles/rad) of an image that also moves by lines (rad), by those of the own sources
     /// that count.
-    pub fn contrast_of(
-        &self,
-        frequency: f64,
-        lines: &[SpectralLine],
-        counts: &dyn Fn(usize) -> bool,
-    ) -> f64 {
+    pub fn contrast_of(&self, frequency: f64, lines: &[SpectralLine], counts: &dyn Fn(usize) -> bool) -> f64 {
         let turn = 2.0 * PI * frequency;
         let gaussian = self.instants.first().map_or(0, |instant| instant.variances.len());
         let own: Vec<&SpectralLine> = self
@@ -169,12 +163,20 @@ mod tests {
     #[test]
     fn a_line_loses_contrast_by_bessel_functions() {
         let lines = [line(50.0)];
-        close(ImageBlur::by_variance(None, 0.0, |_| 0.0).contrast(FREQUENCY, &lines), 0.642_511_836_577_573, 1e-15);
+        close(
+            ImageBlur::by_variance(None, 0.0, |_| 0.0).contrast(FREQUENCY, &lines),
+            0.642_511_836_577_573,
+            1e-15,
+        );
         let blur = ImageBlur::by_lines(Some(EXPOSURE), lines.to_vec());
         close(blur.contrast(FREQUENCY, &[]), 0.951_749_337_277_069_1, 1e-14);
         // Beyond the first zero of J0 light and dark change places.
         let far = SpectralLine { amplitude: 3.0 / (2.0 * PI * FREQUENCY), ..lines[0] };
-        close(ImageBlur::by_variance(None, 0.0, |_| 0.0).contrast(FREQUENCY, &[far]), -0.260_051_954_901_933_4, 1e-14);
+        close(
+            ImageBlur::by_variance(None, 0.0, |_| 0.0).contrast(FREQUENCY, &[far]),
+            -0.260_051_954_901_933_4,
+            1e-14,
+        );
     }
 
     /// Variance of a mode of 50 Hz and 1 % under white noise about its mean over the exposure, by its covariance.

@@ -167,9 +167,8 @@ impl NoisyLoop {
     }
 
     fn named_or_sights(&self, names: &[&str]) -> Vec<usize> {
-        let is_chosen = |signal: &Signal| {
-            names.contains(&signal.name.as_str()) || is_line_about_axis(&signal.name)
-        };
+        let is_chosen =
+            |signal: &Signal| names.contains(&signal.name.as_str()) || is_line_about_axis(&signal.name);
         (0..self.outputs.len()).filter(|index| is_chosen(&self.outputs[*index])).collect()
     }
 

@@ -166,7 +166,12 @@ impl WorstBlur {
     }
 
     /// Returns the contrast with what each source takes of it; the wheels are the last source, if they have lines.
-    fn judged(&self, required: &ContrastRequirement, output: String, sources: Vec<String>) -> RequiredContrast {
+    fn judged(
+        &self,
+        required: &ContrastRequirement,
+        output: String,
+        sources: Vec<String>,
+    ) -> RequiredContrast {
         let contrast = |frequency: f64, counts: &dyn Fn(usize) -> bool| {
             let wheels = if counts(sources.len() - 1) { &self.wheels[..] } else { &[] };
             self.blur.contrast_of(frequency, wheels, counts)

@@ -192,7 +192,8 @@ impl MeasuredLoads {
             })
         };
         for part in &parts {
-            let output = lines.output(&part.replaced.0).map_err(|why| ConfigError::new("line_of_sight", why))?;
+            let output =
+                lines.output(&part.replaced.0).map_err(|why| ConfigError::new("line_of_sight", why))?;
             let known = replaced.iter().position(|own| *own == output).unwrap_or_else(|| {
                 replaced.push(output);
                 replaced.len() - 1

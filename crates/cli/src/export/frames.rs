@@ -54,11 +54,7 @@ pub fn run(args: &ExportArgs, is_jsonl: bool, request: FrameRequest) -> Result<(
     })?;
     let flat = table::flat(&columns).map_err(CliError::Arguments)?;
     write_output(args, |out| {
-        if is_jsonl {
-            table::jsonl(&flat, columns.len(), out)
-        } else {
-            table::csv(&flat, columns.len(), out)
-        }
+        if is_jsonl { table::jsonl(&flat, columns.len(), out) } else { table::csv(&flat, columns.len(), out) }
     })?;
     let Some(path) = &args.out else { return Ok(()) };
     let exposure = time_span(request.exposure.unwrap_or(1.0 / request.rate));

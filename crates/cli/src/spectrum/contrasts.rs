@@ -112,8 +112,7 @@ fn cost_rows(own: &RequiredContrast) -> Vec<Json> {
 /// # Errors
 /// The names of those that are missed.
 pub fn require_met(name: &str, contrasts: &[RequiredContrast]) -> Result<(), CliError> {
-    let missed: Vec<&str> =
-        contrasts.iter().filter(|own| !own.met).map(|own| own.name.as_str()).collect();
+    let missed: Vec<&str> = contrasts.iter().filter(|own| !own.met).map(|own| own.name.as_str()).collect();
     if missed.is_empty() {
         return Ok(());
     }
@@ -139,7 +138,8 @@ fn figure(name: &str, own: &RequiredContrast, (unit, size): (&str, f64)) -> Figu
         "",
         points.iter().map(|(frequency, _)| *frequency),
     );
-    let y = FigureAxis::from_zero("contrast (MTF)", "", points.iter().map(|(_, mtf)| *mtf).chain([own.least]));
+    let y =
+        FigureAxis::from_zero("contrast (MTF)", "", points.iter().map(|(_, mtf)| *mtf).chain([own.least]));
     let layers = vec![
         Layer::new("", colour::BLUE, LayerShape::Line(1.5), points),
         Layer::new(

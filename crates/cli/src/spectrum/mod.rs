@@ -14,7 +14,8 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use flexsc_core::analysis::noise::{
-    EnergyCircle, MachineLines, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window, WindowRms,
+    EnergyCircle, MachineLines, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window,
+    WindowRms,
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::time_span;

@@ -13,7 +13,9 @@ use flexsc_core::campaign::{Campaign, Design};
 use flexsc_core::formats::count::counted;
 use flexsc_core::scenario::ContrastRequirement;
 use flexsc_core::uncertain::UncertainKey;
-use flexsc_core::worst_case::{ContrastSearch, LineSearch, MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase};
+use flexsc_core::worst_case::{
+    ContrastSearch, LineSearch, MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase,
+};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 

@@ -21,9 +21,9 @@ use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
 pub use box_search::{Assessed, SearchPoint};
+pub use contrast_search::ContrastSearch;
 use flexsc_scenario::Scenario;
 use flexsc_scenario::uncertain::{UncertainBox, UncertainKey};
-pub use contrast_search::ContrastSearch;
 pub use line_search::LineSearch;
 pub use margin_search::{MarginKind, MarginSearch};
 pub use metric_search::{MetricSearch, RunQuantity};

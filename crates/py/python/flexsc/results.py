@@ -56,6 +56,7 @@ __all__ = [
     "OutputBound",
     "OutputNoise",
     "PointingBudget",
+    "RequiredContrast",
     "SettlingTime",
     "StabilityMargins",
     "TunedMeasure",
@@ -150,6 +151,57 @@ class IndexBudget(BudgetFigure, Data):
     """Levels at each probability, by their interpretation."""
 
 
+_CONTRAST_COST = attributes(
+    alone=("alone", number),
+    without=("without", number),
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RequiredContrast(Data):
+    """Contrast of an image that a requirement asks for, at the worst axis of its line of sight and at the
+    worst speed of the wheels.
+
+    >>> sharp = {"name": "sharp", "quantity": "mtf", "point": "bench", "spatial_frequency": 1e5, "least": 0.9}
+    >>> spectrum = flexsc.Scenario.example("wheel-run-up").with_("requirement", [sharp]).spectrum()
+    >>> contrast = spectrum.contrasts["sharp"]
+    >>> contrast.met == (contrast.mtf >= 0.9), list(contrast.costs)[0]
+    (True, 'actuator.wheels.imbalance')
+    """
+
+    name: str = at("name", plain)
+    """Name of the requirement."""
+
+    output: str = at("output", plain)
+    """Output that moves the image: the line of sight about its worst axis."""
+
+    spatial_frequency: float = at("spatial_frequency", number)
+    """Spatial frequency (cycles/rad)."""
+
+    exposure: float = at("exposure_s", number)
+    """Length of the exposures (s); none for a long one. NaN if there is none."""
+
+    least: float = at("least", number)
+    """Least accepted contrast."""
+
+    mtf: float = at("mtf", number)
+    """Contrast (MTF) that the motion leaves."""
+
+    met: bool = at("met", plain)
+    """True if the contrast is at least the accepted one."""
+
+    speed: float = at("speed_rad_s", number)
+    """Speed of the wheels at which it is least (rad/s), if they have imbalance. NaN if there is none."""
+
+    costs: dict[str, dict[str, float]] = at("costs", keyed("source", _CONTRAST_COST))
+    """Sources, that which costs most first."""
+
+    curve: Columns = at("curve", columns(spatial_frequency="spatial_frequency", mtf="mtf"))
+    """Contrast over the spatial frequency. `spatial_frequency`: spatial frequency (cycles/rad); `mtf`:
+    contrast (MTF).
+    """
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class PointingBudget(Data):
     """Budgets of all pointing indices that a scenario limits, and the verdicts of its requirements.
@@ -164,6 +216,9 @@ class PointingBudget(Data):
 
     indices: tuple[IndexBudget, ...] = at("budgets", tuple_of(one(IndexBudget)))
     """Budget of each pointing index, in the order of the requirements."""
+
+    contrasts: dict[str, RequiredContrast] = at("contrasts", keyed("name", one(RequiredContrast)))
+    """Contrasts of images that requirements ask for, with what each source costs."""
 
     requirements: tuple[dict[str, Any], ...] = at("requirements", tuple_of(plain))
     """Verdict of each requirement: `name`, `verdict`, `value`, `limit` and the confidence of the campaign.
@@ -422,6 +477,15 @@ _IMAGE_FACTORS = attributes(
 )
 
 
+_ENERGY_CIRCLE = attributes(
+    major_rms=("major_rms_rad", number),
+    minor_rms=("minor_rms_rad", number),
+    radius_50=("radius_50_rad", number),
+    radius_80=("radius_80_rad", number),
+    radius_95=("radius_95_rad", number),
+)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class MirrorSensitivity(Data):
     """Sensitivity of a fine mirror: the motion of a line of sight behind it, relative to that before it,
@@ -501,6 +565,14 @@ class NoiseSpectrum(NoiseFigure, Data):
     rate over the exposure, if one is given: negative where light and dark have changed places;
     `product`: product of these. None if there is none.
     """
+
+    circles: dict[int, dict[str, float]] = at("circles", keyed("line", _ENERGY_CIRCLE))
+    """Circles of the energy of an image by noise and broadband loads, for each line of sight, if a pixel is
+    given: over the exposures.
+    """
+
+    contrasts: dict[str, RequiredContrast] = at("contrasts", keyed("name", one(RequiredContrast)))
+    """Contrasts of images that requirements ask for."""
 
     wheels: WheelSpectrum | None = at("wheels", plain)
     """Lines of the imbalance of the wheels, if they have one. None if there is none."""

@@ -124,6 +124,7 @@ __all__ = [
     "Magnetorquers",
     "Manoeuvre",
     "Matrices",
+    "MeasuredPath",
     "MinimumEnergy",
     "MinimumPeak",
     "Mode",
@@ -2332,6 +2333,8 @@ class LineOfSight(Part):
             undeformed.
         optics: Mirrors, lenses and detectors whose motions add up to that of the line of sight, along an
             axis of the body; default: it turns with `point`.
+        measured: Measured responses of the line of sight to forces and torques at points, in place of the
+            model: for linear tools.
         mirror: Mirror that turns the image back, in a loop of its own; errors of the line of sight are then
             those behind it.
         window: Start and end (s) of the interval in which it is assessed; default: the whole run.
@@ -2348,6 +2351,10 @@ class LineOfSight(Part):
     optics: Sequence[OpticalElement] = DEFAULT
     """Mirrors, lenses and detectors whose motions add up to that of the line of sight, along an axis of the
     body; default: it turns with `point`.
+    """
+    measured: Sequence[MeasuredPath] = DEFAULT
+    """Measured responses of the line of sight to forces and torques at points, in place of the model: for
+    linear tools.
     """
     mirror: FineMirror = DEFAULT
     """Mirror that turns the image back, in a loop of its own; errors of the line of sight are then those
@@ -2394,15 +2401,17 @@ class LitPlate(Part):
 
 
 class LoadDensity(Part):
-    """Stationary Gaussian force and torque at a point, whose components are independent: one-sided
-    densities that are constant between two corners, or a table over frequency. Below `lower` a density
-    falls with the fourth power of the frequency, above `upper` with its inverse: filters of the second
-    order with a damping ratio of 0.7. A table is linear between its rows on logarithmic scales, and zero
-    outside.
+    """Stationary Gaussian force and torque at a point, whose components are independent but for
+    `correlation`: one-sided densities that are constant between two corners, or a table over frequency.
+    Below `lower` a density falls with the fourth power of the frequency, above `upper` with its inverse:
+    filters of the second order with a damping ratio of 0.7. A table is linear between its rows on
+    logarithmic scales, and zero outside.
 
     Args:
         force: One-sided density of the force along x, y and z between the corners (N²/Hz).
         torque: One-sided density of the torque about x, y and z between the corners ((N m)²/Hz).
+        correlation: Correlation of the components: three rows for the force along x, y and z, or six with
+            the torque about x, y and z; symmetric, with 1 on the diagonal. Default: none.
         lower: Lower corner (rad/s).
         upper: Upper corner (rad/s).
         table: Densities over frequency in place of the corners, or the path of a .csv file: frequency (Hz)
@@ -2414,6 +2423,10 @@ class LoadDensity(Part):
     """One-sided density of the force along x, y and z between the corners (N²/Hz)."""
     torque: Vector = DEFAULT
     """One-sided density of the torque about x, y and z between the corners ((N m)²/Hz)."""
+    correlation: Rows = DEFAULT
+    """Correlation of the components: three rows for the force along x, y and z, or six with the torque
+    about x, y and z; symmetric, with 1 on the diagonal. Default: none.
+    """
     lower: float = DEFAULT
     """Lower corner (rad/s)."""
     upper: float = DEFAULT
@@ -2723,6 +2736,42 @@ class Matrices(Part):
     """Rigid rate at the start (rad/s). Default: 0.0."""
     outputs: Sequence[Sum] = DEFAULT
     """Sums of coordinates that are observed in addition to the hub's angle."""
+
+
+class MeasuredPath(Part):
+    """Response of a line of sight to a force along, or a torque about, an axis at a point, measured over
+    frequency: by a shaker, or by the frequency response of a structural solver. Before a fine mirror.
+
+    Args:
+        point: Point at which the load acts.
+        about: Axis of the body about which the line of sight turns.
+        table: Response over frequency, or the path of a .csv file: frequency (Hz), and its real and
+            imaginary part.
+        force: Axis of the body along which the force acts.
+        torque: Axis of the body about which the torque acts, in place of a force.
+        phase: Unit of the phase, `rad` or `deg`, of a table with magnitude and phase in place of real and
+            imaginary part.
+        unit: Unit of the response, such as `arcsec/N`; default: rad per N of a force, rad per N m of a
+            torque.
+    """
+
+    point: str
+    """Point at which the load acts."""
+    about: Literal["x", "y", "z"]
+    """Axis of the body about which the line of sight turns."""
+    table: Rows | str
+    """Response over frequency, or the path of a .csv file: frequency (Hz), and its real and imaginary part.
+    """
+    force: Literal["x", "y", "z"] = DEFAULT
+    """Axis of the body along which the force acts."""
+    torque: Literal["x", "y", "z"] = DEFAULT
+    """Axis of the body about which the torque acts, in place of a force."""
+    phase: str = DEFAULT
+    """Unit of the phase, `rad` or `deg`, of a table with magnitude and phase in place of real and imaginary
+    part.
+    """
+    unit: str = DEFAULT
+    """Unit of the response, such as `arcsec/N`; default: rad per N of a force, rad per N m of a torque."""
 
 
 class MinimumEnergy(Part):
@@ -3623,10 +3672,12 @@ class Requirement(Part):
         mode: Mode of operation in which the requirement counts; default: all.
         during: Condition during which the requirement counts, such as `"truth.sunlight < 0.5"` or
             `"blinded(star_tracker)"`.
-        quantity: Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, or a metric, such as
-            `fuel_kg` or `fuel_axes_kg[2]`; of a list without an index, its largest element.
+        quantity: Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, the contrast `mtf` of
+            an image, or a metric, such as `fuel_kg` or `fuel_axes_kg[2]`; of a list without an index, its
+            largest element.
         point: Point of the line of sight, which is a `[[line_of_sight]]` of the scenario.
-        axis: Component of the error about an axis of the body; default: the norm of all components.
+        axis: Component of the error about an axis of the body; default: the norm of all components, for
+            `mtf` the worst.
         index: Pointing index of an error (ECSS-E-ST-60-10C); default: APE. A metric has none.
         window: Length of the index' window (s), a whole number of sampling periods; all indices but APE
             have one.
@@ -3639,6 +3690,11 @@ class Requirement(Part):
         to: End of the part of the run that counts (s); default: the end of the run.
         limit: Largest accepted value, in SI units or as a text with a unit that fits the quantity, such as
             "2 arcsec".
+        spatial_frequency: Spatial frequency (cycles/rad) across the image at which `mtf` is required, such
+            as "0.5 cycles/arcsec".
+        exposure: Length of the exposures (s) of the image for `mtf`; default: a long exposure, over all
+            time.
+        least: Least accepted `mtf`, in place of a `limit`.
         level: Probability at which the value is at most the limit; default: 1, always and in every run.
         interpretation: Statistical interpretation of the level; an error with a level below 1 needs one.
         confidence: Confidence at which a campaign shows the level, for the ensemble interpretation;
@@ -3666,13 +3722,15 @@ class Requirement(Part):
     `"blinded(star_tracker)"`.
     """
     quantity: str = DEFAULT
-    """Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, or a metric, such as `fuel_kg` or
-    `fuel_axes_kg[2]`; of a list without an index, its largest element.
+    """Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, the contrast `mtf` of an image,
+    or a metric, such as `fuel_kg` or `fuel_axes_kg[2]`; of a list without an index, its largest element.
     """
     point: str = DEFAULT
     """Point of the line of sight, which is a `[[line_of_sight]]` of the scenario."""
     axis: Literal["x", "y", "z"] = DEFAULT
-    """Component of the error about an axis of the body; default: the norm of all components."""
+    """Component of the error about an axis of the body; default: the norm of all components, for `mtf` the
+    worst.
+    """
     index: Literal["APE", "MPE", "RPE", "PDE", "PRE"] = DEFAULT
     """Pointing index of an error (ECSS-E-ST-60-10C); default: APE. A metric has none."""
     window: float = DEFAULT
@@ -3693,6 +3751,14 @@ class Requirement(Part):
     """Largest accepted value, in SI units or as a text with a unit that fits the quantity, such as "2
     arcsec".
     """
+    spatial_frequency: float = DEFAULT
+    """Spatial frequency (cycles/rad) across the image at which `mtf` is required, such as "0.5
+    cycles/arcsec".
+    """
+    exposure: float = DEFAULT
+    """Length of the exposures (s) of the image for `mtf`; default: a long exposure, over all time."""
+    least: float = DEFAULT
+    """Least accepted `mtf`, in place of a `limit`."""
     level: float = DEFAULT
     """Probability at which the value is at most the limit; default: 1, always and in every run."""
     interpretation: Literal["temporal", "ensemble", "mixed"] = DEFAULT

@@ -6,7 +6,8 @@ use flexsc_core::metrics::Selection;
 use flexsc_core::record::StopFlag;
 use flexsc_core::uncertain::UncertainKey;
 use flexsc_core::worst_case::{
-    ContrastSearch, LineSearch, MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCaseFault, WorstCaseReport,
+    ContrastSearch, LineSearch, MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCaseFault,
+    WorstCaseReport,
 };
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
