@@ -208,7 +208,7 @@ impl MeasuredLoads {
     }
 
     /// Returns the ends and the peaks of the paths.
-    fn resonances(&self) -> impl Iterator<Item = Resonance> {
+    fn resonances(&self) -> impl Iterator<Item = LoopResonance> {
         self.parts.iter().flat_map(MeasuredPart::resonances)
     }
 
