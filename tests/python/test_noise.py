@@ -71,8 +71,8 @@ def test_required_contrasts_are_those_of_the_worst_speed_and_axis() -> None:
     assert found.curve["spatial_frequency"][-1] == pytest.approx(4e5)
     wheels = found.costs["actuator.wheels.imbalance"]
     assert wheels["alone"] == pytest.approx(found.mtf, rel=1e-3)
-    circle = pixel.circles[0]
-    assert 0.0 < circle["radius_50"] < circle["radius_80"] < circle["radius_95"]
+    # Neither noise nor broadband loads: no circle has a size.
+    assert pixel.circles[0]["radius_95"] == 0.0
 
 
 def test_the_worst_contrast_is_searched_for_by_linear_loops() -> None:
