@@ -9,7 +9,7 @@ mpmath
 
 import mpmath as mp
 import numpy as np
-from broadband import DENSITY, HUB, BANDWIDTH, LOWER, UPPER, line, over, system
+from broadband import BANDWIDTH, DENSITY, HUB, LOWER, UPPER, line, over, system
 from scipy.linalg import solve_discrete_lyapunov
 from scipy.special import j0, roots_legendre
 
@@ -104,7 +104,9 @@ def contrast(nu, exposure, axis, broad, tones):
     if exposure is None:
         return at(0)
     places, weights = roots_legendre(40)
-    return sum(0.5 * weight * at(0.5 * exposure * place) for place, weight in zip(places, weights, strict=True))
+    return sum(
+        0.5 * weight * at(0.5 * exposure * place) for place, weight in zip(places, weights, strict=True)
+    )
 
 
 if __name__ == "__main__":

@@ -67,12 +67,12 @@ def test_required_contrasts_are_those_of_the_worst_speed_and_axis() -> None:
     found = craft.with_("requirement", [SHARP]).spectrum().contrasts["sharp"]
     assert found.mtf == pytest.approx(least, rel=1e-6)
     assert found.met == (found.mtf >= 0.99)
-    assert found.curve["mtf"][0] == 1.0
+    assert found.curve["mtf"][0] == pytest.approx(1.0)
     assert found.curve["spatial_frequency"][-1] == pytest.approx(4e5)
     wheels = found.costs["actuator.wheels.imbalance"]
     assert wheels["alone"] == pytest.approx(found.mtf, rel=1e-3)
-    circle = pixel.circles[0]
-    assert 0.0 < circle["radius_50"] < circle["radius_80"] < circle["radius_95"]
+    # Neither noise nor broadband loads: no circle has a size.
+    assert pixel.circles[0]["radius_95"] == 0.0
 
 
 def test_the_worst_contrast_is_searched_for_by_linear_loops() -> None:
@@ -80,4 +80,4 @@ def test_the_worst_contrast_is_searched_for_by_linear_loops() -> None:
     craft = flexsc.Scenario.example("wheel-run-up").with_("requirement", [SHARP]).with_("uncertain", ranges)
     worst = craft.worst(requirement="sharp", points=8)
     assert worst.least
-    assert worst.worst <= worst.nominal
+    assert worst.value <= worst.nominal

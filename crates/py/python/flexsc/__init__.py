@@ -88,6 +88,7 @@ if TYPE_CHECKING:
         OutputBound,
         OutputNoise,
         PointingBudget,
+        RequiredContrast,
         SettlingTime,
         StabilityMargins,
         TunedMeasure,
@@ -144,6 +145,7 @@ __all__ = [
     "PointingBudget",
     "Quantities",
     "Reading",
+    "RequiredContrast",
     "Result",
     "Row",
     "Samples",
@@ -217,8 +219,8 @@ _LATER = {
         "_sensitivity": "Sensitivities sensitivities",
         "_signal": "Signal",
         "results": "BudgetLevel IndexBudget LoopMargins MirrorSensitivity NoiseSpectrum OutputBound "
-        "OutputNoise PointingBudget SettlingTime StabilityMargins TunedMeasure TunedPlant TunedScenario "
-        "Witness WorstCase",
+        "OutputNoise PointingBudget RequiredContrast SettlingTime StabilityMargins TunedMeasure TunedPlant "
+        "TunedScenario Witness WorstCase",
         "structure": "StateSpace Structure appendage_from_craig_bampton appendage_from_matrices "
         "appendage_from_nastran from_csv from_nastran from_state_space read_matrices",
     }.items()

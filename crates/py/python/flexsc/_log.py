@@ -129,8 +129,8 @@ class Log(Topics, Exportable, Drawable):
         """Return the lines of sight as frames of a camera, and where lines of their spectrum land.
 
         The topic `frames` has, for each frame, the mean error about x, y and z over its exposure and the rms
-        about it, for simulators of images. A line is a dictionary, the largest in the frames first: its source,
-        its frequency and where it lands (Hz), and its amplitudes in the run and in the frames (rad).
+        about it, for simulators of images. A line is a dictionary, the largest in the frames first: its
+        source, its frequency and where it lands (Hz), and its amplitudes in the run and in the frames (rad).
 
         >>> craft = flexsc.Scenario.example("wheel-run-up").with_("duration", 2.0)
         >>> with tempfile.TemporaryDirectory() as out:
