@@ -62,7 +62,8 @@ SHARP = {
 def test_required_contrasts_are_those_of_the_worst_speed_and_axis() -> None:
     craft = flexsc.Scenario.example("wheel-run-up")
     pixel = craft.spectrum(window=0.02, pixel=0.5 / SHARP["spatial_frequency"])
-    assert pixel.wheels is not None and pixel.wheels.mtf is not None
+    assert pixel.wheels is not None
+    assert pixel.wheels.mtf is not None
     least = min(values.min() for name, values in pixel.wheels.mtf.items() if name.startswith("line_of_sight"))
     found = craft.with_("requirement", [SHARP]).spectrum().contrasts["sharp"]
     assert found.mtf == pytest.approx(least, rel=1e-6)

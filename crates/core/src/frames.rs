@@ -141,7 +141,7 @@ impl FrameColumns {
             return Err(FrameFault::Request(why));
         }
         let count = ((last - first - exposure) * rate + ROUNDING).floor() + 1.0;
-        if count < 1.0 || count > MOST_FRAMES {
+        if !(1.0..=MOST_FRAMES).contains(&count) {
             let why = format!("frames must be from 1 to {MOST_FRAMES} in the run, got {}", count.max(0.0));
             return Err(FrameFault::Request(why));
         }

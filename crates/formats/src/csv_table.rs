@@ -128,7 +128,7 @@ fn read<K: TableKind>(file: impl BufRead) -> Result<RowsAndHeader, String> {
             fields.iter().map(|field| field.to_ascii_lowercase()).eq(header.iter().copied())
         };
         if std::mem::take(&mut is_first) {
-            header = K::HEADERS.iter().copied().find(|header| is_header(&header));
+            header = K::HEADERS.iter().copied().find(|header| is_header(header));
             if header.is_some() {
                 continue;
             }

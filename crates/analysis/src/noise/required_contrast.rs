@@ -131,7 +131,7 @@ impl RequiredContrast {
         let worst = worst.ok_or_else(NoiseError::without_speed)?;
         let mut sources = [&noisy.sources[..], &vibration.sources].concat();
         sources.extend(wheels.map(|_| WHEELS.to_owned()));
-        Ok(worst.judged(required, noisy.outputs[worst.output].name.clone(), sources))
+        Ok(worst.judged(required, noisy.outputs[worst.output].name.clone(), &sources))
     }
 
     /// Returns the margin: the contrast less the accepted one.
@@ -166,12 +166,7 @@ impl WorstBlur {
     }
 
     /// Returns the contrast with what each source takes of it; the wheels are the last source, if they have lines.
-    fn judged(
-        &self,
-        required: &ContrastRequirement,
-        output: String,
-        sources: Vec<String>,
-    ) -> RequiredContrast {
+    fn judged(&self, required: &ContrastRequirement, output: String, sources: &[String]) -> RequiredContrast {
         let contrast = |frequency: f64, counts: &dyn Fn(usize) -> bool| {
             let wheels = if counts(sources.len() - 1) { &self.wheels[..] } else { &[] };
             self.blur.contrast_of(frequency, wheels, counts)
