@@ -1,10 +1,12 @@
 //! Broadband forces and lines of machines on the bench of micro-vibration, against an independent computation, in linear loops and in runs.
 
+use flexsc_core::Scenario;
 use serde_json::Value;
 
 use crate::fine_mirror::MIRROR;
 use crate::mounts::{MOUNT, WHEELS};
 use crate::optics::BENCH;
+use crate::traces::{nested, traced};
 use crate::util::Dir;
 
 /// Density of the forces on the wheel unit.
@@ -182,6 +184,28 @@ fn densities_keep_the_frequencies_of_the_noise() {
         let place = both.partition_point(|own| own.0 < frequency * (1.0 - 1e-12));
         agree("frequency", both[place].0, frequency, 1e-12);
         agree("density", both[place].1, density, 1e-9);
+    }
+}
+
+/// A torque about the boresight turns these optics too, because one of them is off it: by 0.012 rad for 1 rad.
+#[test]
+fn optics_off_the_boresight_see_the_rotation_about_it() {
+    let twist = "\n[[disturbance]]\npoint = \"rotor\"\n[disturbance.lines]\nfrequency = \"51 Hz\"\n\
+                 harmonics = [{ order = 1, torque = [0, 0, 0.01] }]\n";
+    let text = bench(0.01, twist);
+    let dir = Dir::new();
+    dir.write("bench.toml", &text);
+    let command = "spectrum bench.toml --signal line_of_sight0_x,line_of_sight0_y --json";
+    let report = dir.run(command).exits(0).json();
+    let short = text.replacen("duration = 2.0", "duration = 100.0", 1);
+    assert_ne!(short, text);
+    let trace = traced(&Scenario::parse("bench.toml", &short).expect("a scenario"));
+    for about in 0..2 {
+        let errors = nested(&trace, "/line_of_sight", ["axes", "error_rad"], (about, 3));
+        let late = &errors[errors.len() - 500..];
+        let mean = late.iter().sum::<f64>() / 500.0;
+        let rms = (late.iter().map(|error| (error - mean).powi(2)).sum::<f64>() / 500.0).sqrt();
+        agree("run", rms, number(&report["outputs"][about]["rms"]), 2e-3);
     }
 }
 

@@ -1,13 +1,12 @@
 //! Errors of lines of sight: where instruments look, against their target directions.
 
-use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::attitude::{Vector, rotation_vector};
 use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::environment::to_body;
 
 use super::guidance::Guidance;
 use super::plant::Plant;
 use flexsc_scenario::{LineOfSight, LineSensitivity, Scenario};
-use nalgebra::Quaternion;
 
 /// All lines of sight of a scenario on their mounts.
 #[derive(Clone, Debug, Default)]
@@ -40,17 +39,16 @@ impl MountedLine {
     fn error(&self, plant: &Plant, guidance: &Guidance, now: Instant) -> Option<Vector> {
         let (truth, body) = (plant.truth(), plant.quantities().three_axis()?.body());
         let target = guidance.origin(now).attitude()?;
-        // Rotation of the direction in the axes of the target.
-        let turned = |instrument: Quaternion<f64>| {
-            let seen: Vector = to_body(&(instrument.conjugate() * target), &self.direction);
-            rotation_between(&self.direction, &seen)
-        };
         if let Some(optics) = &self.optics {
-            let rigid = turned(truth.orientation.attitude()?);
+            // Optics off the boresight see the rotation about it too.
+            let rigid = rotation_vector(&target, &truth.orientation.attitude()?);
             return Some(optics.rigid * rigid + body.modal_rotation(&optics.modes));
         }
         let bent = Vector::from(truth.elastic) + body.modal_rotation(&self.offsets);
-        Some(turned(truth.orientation.rotated_by(bent.into()).attitude()?))
+        let instrument = truth.orientation.rotated_by(bent.into()).attitude()?;
+        // Direction in the axes of the target.
+        let seen: Vector = to_body(&(instrument.conjugate() * target), &self.direction);
+        Some(rotation_between(&self.direction, &seen))
     }
 }
 

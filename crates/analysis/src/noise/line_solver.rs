@@ -30,13 +30,16 @@ const SLOW: f64 = 3e-6;
 /// Complex amplitudes: a row for each output, axis or state, and a column for each load.
 pub type Amplitudes = DMatrix<Complex<f64>>;
 
+/// Motion of the body at the nodes of an integral over a piece: times and weights (s), and motions.
+type FlowNodes = Vec<(f64, f64, HeldMotion)>;
+
 /// Solver of a loop.
 pub struct LineSolver {
     period_rows: PeriodRows,
     body: FrequencyResponse,
     loop_over_period: FrequencyResponse,
-    /// Motion of the body during a piece of each length (fs), at the nodes of its integral: times, weights, and motions.
-    nodes: OnceLock<BTreeMap<i64, Vec<(f64, f64, HeldMotion)>>>,
+    /// Motion of the body during a piece of each length (fs).
+    nodes: OnceLock<BTreeMap<i64, FlowNodes>>,
 }
 
 /// Frequencies (rad/s, with a sign) of the lines over a period (s), the last that of the load.

@@ -156,7 +156,7 @@ impl<'a> LineLoop<'a> {
                 let slow = self.solver.slow_amplitudes(&self.parts, &motion, (&self.rows, outputs), at);
                 own.zip_apply(&slow, |value, slow| {
                     if value.re.is_nan() {
-                        *value = slow
+                        *value = slow;
                     }
                 });
             }

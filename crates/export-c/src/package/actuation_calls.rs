@@ -78,11 +78,11 @@ fn drive(plan: &Plan<'_>, own: &Actuation, [demanded, counter]: [&str; 2], text:
 }
 
 /// Writes the torques of the wheels for a demanded torque about each axis.
-pub fn wheels<T: AsRef<str>>(plan: &Plan<'_>, own: &Actuation, torque: [T; 3], text: &mut String) {
+pub fn wheels<T: AsRef<str>>(plan: &Plan<'_>, own: &Actuation, torque: &[T; 3], text: &mut String) {
     if own.wheels.is_none() {
         return;
     }
-    let demanded = shim::vector(plan, &torque);
+    let demanded = shim::vector(plan, torque);
     text.push_str("\n    /* torques of the wheels, which turn the body the other way */\n");
     if own.unloading.is_some() {
         let _ = writeln!(text, "    state->demanded = {demanded};");

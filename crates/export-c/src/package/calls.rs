@@ -105,7 +105,7 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
         super::shim::variable(plan, "Vector3", "rate", &estimator_calls::rate(unit), text);
     }
     own.step(text);
-    actuation_calls::wheels(plan, actuation, [0, 1, 2].map(|axis| format!("output->torque[{axis}]")), text);
+    actuation_calls::wheels(plan, actuation, &[0, 1, 2].map(|axis| format!("output->torque[{axis}]")), text);
     if actuation.jets.is_some() {
         text.push_str("\n    /* pulses of the jets */\n");
         actuation_calls::jets(actuation, laws.commands_changes(), text);

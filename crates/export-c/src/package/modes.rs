@@ -176,7 +176,7 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
         }
     }
     text.push_str("    default:\n        break;\n    }\n");
-    actuation_calls::wheels(plan, &modes.actuation, VECTOR.map(|axis| format!("torque.{axis}")), text);
+    actuation_calls::wheels(plan, &modes.actuation, &VECTOR.map(|axis| format!("torque.{axis}")), text);
     if modes.field.is_some() {
         shim::spread("output->moment", "state->moment", &VECTOR, text);
     }
