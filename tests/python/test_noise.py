@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import flexsc
 import numpy as np
 import pytest
@@ -49,7 +51,7 @@ def test_what_has_no_spectrum_is_refused() -> None:
         flexsc.Scenario.example("attitude-hold").spectrum(separation=3.0)
 
 
-SHARP = {
+SHARP: dict[str, Any] = {
     "name": "sharp",
     "quantity": "mtf",
     "point": "bench",

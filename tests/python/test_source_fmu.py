@@ -220,7 +220,7 @@ def test_modes_in_sources_equal_the_calls_of_the_run(tmp_path: Path) -> None:
             if function not in ("start", "field"):
                 set_inputs(laws, function, now, inputs)
         laws.slave.doStep(here, then - here)
-        expected = {}
+        expected: dict[str, Any] = {}
         for function, _, _, outputs in group:
             if function in ("field", "step", "unload"):
                 for name, values in outputs.items():

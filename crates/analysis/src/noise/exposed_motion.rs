@@ -13,6 +13,8 @@ const HARMONICS: f64 = 4.0;
 const MOST_TURN: f64 = 600.0;
 /// Part of the power of broadband motion that may be above the fastest motion.
 const VANISHING: f64 = 1e-6;
+/// Part of the power of broadband motion that is left out.
+const ROUNDING: f64 = 1e-14;
 
 /// Gaussian motion of an output during exposures that begin at samples of the law, or during one without end.
 pub(super) struct ExposedMotion<'a> {
@@ -20,8 +22,49 @@ pub(super) struct ExposedMotion<'a> {
     output: usize,
     /// Length of the exposures (s), and what the variances about the mean need.
     exposure: Option<(f64, OutputMoments)>,
-    /// Lines of each broadband source.
-    bands: Vec<&'a [SpectralLine]>,
+    /// Motion by each broadband source.
+    bands: Vec<BandMotion>,
+    /// Frequency (rad/s) up to which they move it.
+    edge: f64,
+}
+
+/// Motion by a broadband source about its mean over the exposures.
+struct BandMotion {
+    /// Variance but for its change during an exposure.
+    even: f64,
+    /// Parts of the variance that change: amplitude and frequency (rad/s).
+    waves: Vec<[f64; 2]>,
+}
+
+impl BandMotion {
+    /// Creates the motion of lines during exposures (s), or during one without end.
+    fn new(lines: &[SpectralLine], exposure: Option<f64>) -> Self {
+        let total: f64 = lines.iter().map(SpectralLine::mean_square).sum();
+        let Some(length) = exposure else { return Self { even: total, waves: Vec::new() } };
+        let mut found = Self { even: 0.0, waves: Vec::with_capacity(lines.len()) };
+        for line in lines {
+            let mean = line_mean(line, length);
+            found.even += line.mean_square() * (1.0 + mean * mean);
+            found.waves.push([-2.0 * line.mean_square() * mean, line.frequency_rad_s]);
+        }
+        // Aliases are many, and most have no part in it.
+        found.waves.sort_by(|a, b| b[0].abs().total_cmp(&a[0].abs()));
+        let mut left = 0.0;
+        while let Some([amplitude, _]) = found.waves.last() {
+            left += amplitude.abs();
+            if left > ROUNDING * total {
+                break;
+            }
+            found.waves.pop();
+        }
+        found
+    }
+
+    /// Returns the variance at a time from the middle of the exposure (s).
+    fn variance(&self, time: f64) -> f64 {
+        let wave = |[amplitude, frequency]: &[f64; 2]| amplitude * libm::cos(frequency * time);
+        self.even + self.waves.iter().map(wave).sum::<f64>()
+    }
 }
 
 impl<'a> ExposedMotion<'a> {
@@ -37,14 +80,19 @@ impl<'a> ExposedMotion<'a> {
     ) -> Result<Self, String> {
         exposure.map_or(Ok(()), |length| noisy.check_time("window", length))?;
         let moments = |length| (length, noisy.moments(output, [0.0, noisy.period]));
-        let bands = vibration.sources_of(output, true).map(|own| &own.lines[..]).collect();
-        Ok(Self { noisy, output, exposure: exposure.map(moments), bands })
+        let sources = || vibration.sources_of(output, true);
+        Ok(Self {
+            noisy,
+            output,
+            exposure: exposure.map(moments),
+            bands: sources().map(|own| BandMotion::new(&own.lines, exposure)).collect(),
+            edge: upper_edge(sources().flat_map(|own| &own.lines)),
+        })
     }
 
     /// Returns the frequency (rad/s) up to which the motion has all but a vanishing part of its power.
     pub fn fastest(&self) -> f64 {
-        let of_body = self.noisy.frequencies.iter().copied();
-        of_body.fold(upper_edge(self.bands.iter().copied().flatten()), f64::max)
+        self.noisy.frequencies.iter().copied().fold(self.edge, f64::max)
     }
 
     /// Returns the variance about the mean from each source, those of the loop first, at a time from the middle of the exposure (s).
@@ -56,14 +104,7 @@ impl<'a> ExposedMotion<'a> {
                 self.noisy.functional_variances(self.output, &about_mean, moments)
             }
         };
-        let square = |line: &SpectralLine| match &self.exposure {
-            None => 1.0,
-            Some((length, _)) => about_mean_square(line, *length, time),
-        };
-        let power = |lines: &&[SpectralLine]| -> f64 {
-            lines.iter().map(|line| line.mean_square() * square(line)).sum()
-        };
-        found.extend(self.bands.iter().map(power));
+        found.extend(self.bands.iter().map(|band| band.variance(time)));
         found
     }
 }
@@ -79,8 +120,13 @@ pub(super) fn instants(exposure: Option<f64>, fastest: f64) -> Vec<(f64, f64)> {
 
 /// Returns the square by which the amplitude of a sine about its mean over an exposure (s) exceeds its own, at a time from the middle.
 pub(super) fn about_mean_square(line: &SpectralLine, length: f64, time: f64) -> f64 {
-    let mean = j0(0.5 * line.frequency_rad_s * length);
+    let mean = line_mean(line, length);
     1.0 - 2.0 * mean * libm::cos(line.frequency_rad_s * time) + mean * mean
+}
+
+/// Returns the mean of a sine over an exposure (s), as a part of its amplitude, at its greatest.
+fn line_mean(line: &SpectralLine, length: f64) -> f64 {
+    j0(0.5 * line.frequency_rad_s * length)
 }
 
 /// Returns the frequency (rad/s) up to which lines have all but a vanishing part of their power.

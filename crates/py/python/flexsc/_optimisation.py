@@ -16,12 +16,23 @@ if TYPE_CHECKING:
 
 
 class Optimum(NamedTuple):
-    """Result of `optimise`: the scenario with the best values, and SciPy's account of the search."""
+    """Result of `optimise`: the scenario with the best values, and SciPy's account of the search.
+
+    >>> best: flexsc.Optimum = flexsc.optimise(scenario, ["law.pd.k_d"], "itae")        # doctest: +SKIP
+    """
 
     scenario: Scenario
-    """The scenario with the best values."""
+    """The scenario with the best values.
+
+    >>> best.scenario.get("law.pd.k_d")                                                 # doctest: +SKIP
+    0.26
+    """
     result: Any
-    """SciPy's OptimizeResult: its `x` are the values of the keys, its `fun` is the metric."""
+    """SciPy's OptimizeResult: its `x` are the values of the keys, its `fun` is the metric.
+
+    >>> best.result.fun == best.scenario.simulate().metrics["itae"]                     # doctest: +SKIP
+    True
+    """
 
 
 def optimise(

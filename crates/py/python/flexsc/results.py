@@ -551,8 +551,8 @@ class NoiseSpectrum(NoiseFigure, Data):
     """Sources of noise: keys of the scenario."""
 
     frequency_hz: Values = at("frequency_hz", array)
-    """Frequencies of the densities (Hz): up to the Nyquist frequency, and with broadband loads as far as
-    these go.
+    """Frequencies of the densities (Hz): up to the Nyquist frequency, and as far as broadband loads and
+    lines of machines go.
     """
 
     outputs: dict[str, OutputNoise] = at("outputs", keyed("output", one(OutputNoise)))
