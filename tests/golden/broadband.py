@@ -247,7 +247,7 @@ def behind_mirror(period, *, held=False):
     """The rms about x and y before and behind the mirror; a law of period 0 is continuous."""
     a, noise, torque, sight, gain = mounted(period > 0, held=held)
     body = len(a)
-    # Torques that are held, and about each axis the mirror's angle, rate, command, waiting mean, and integral.
+    # Torques that are held, and about each axis the mirror's angle, rate, command, waiting mean and integral.
     size = body + 13
     big, drawn = np.zeros((size, size)), np.zeros((size, 3))
     big[:body, :body], drawn[:body] = a, noise
