@@ -44,7 +44,7 @@ fn difference(readme: &str, row: &str) -> f64 {
 }
 
 /// The review of flight code found, by a mechanical conversion of the C and all calls of the run, 1.6e-6 rad, 5e-8 rad/s and
-/// 1.2e-5 N m .
+/// 1.2e-5 N m.
 #[test]
 fn the_accuracy_is_that_of_an_independent_conversion() {
     let readme = exported("earth-observer", "").text("out/README.md");

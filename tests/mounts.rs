@@ -368,6 +368,22 @@ fn the_worst_mount_is_the_least_damped() {
     assert!(case["worst"].as_f64() > case["nominal"].as_f64().map(|nominal| 1.5 * nominal), "{case}");
 }
 
+/// What the modes leave of 18 kg: 18 - 3.1² - 0.2² along x, and so on. A mount leaves nothing.
+#[test]
+fn the_mass_that_no_mode_carries_is_printed() {
+    let dir = Dir::new();
+    dir.write("bench.toml", bench(&[]));
+    let found = dir.run("modes bench.toml --json").exits(0).json();
+    for (place, left) in [(0, [8.35, 9.58, 11.2]), (1, [0.0; 3])] {
+        for (axis, left) in left.into_iter().enumerate() {
+            let share = found["residual"][place]["share"][axis].as_f64().expect("a number");
+            assert!((share - left / 18.0).abs() < 1e-12, "{}", found["residual"]);
+        }
+    }
+    let words = "telescope: 46.4 % of 18 kg along x, 53.2 % along y and 62.2 % along z are in no mode";
+    dir.run("modes bench.toml").exits(0).says(&[words]);
+}
+
 #[test]
 fn modes_are_printed_at_a_speed() {
     let dir = Dir::new();

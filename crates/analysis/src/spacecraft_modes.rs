@@ -3,7 +3,7 @@
 
 use flexsc_dynamics::three_axis::DriveAngles;
 use flexsc_numerics::attitude::Vector;
-use flexsc_spacecraft::body::craft::AssembledSpacecraft;
+use flexsc_spacecraft::body::craft::{Appendage, AssembledSpacecraft};
 use serde::Serialize;
 
 use super::mode_influence::ModeInfluences;
@@ -30,6 +30,8 @@ pub struct SpacecraftModes {
     pub whole_damping: bool,
     /// Modes with the roots held, appendage by appendage.
     pub clamped: Vec<ClampedModeRow>,
+    /// Masses of the appendages that their modes do not carry.
+    pub residual: Vec<ResidualMass>,
     /// Response at each point to a torque on the hub.
     pub points: Vec<PointResponse>,
     /// Frequencies of the free modes over the run; empty where no drive turns an appendage.
@@ -64,6 +66,28 @@ pub struct ClampedModeRow {
     pub first_moments: bool,
 }
 
+/// Mass of an appendage that its modes do not carry: it follows the root as if rigid, without the static flexibility of modes that
+/// are left out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ResidualMass {
+    /// Name of the appendage.
+    pub appendage: String,
+    /// Mass of the appendage (kg).
+    pub mass_kg: f64,
+    /// Part of it that no mode carries along each of its axes.
+    pub share: [f64; 3],
+}
+
+impl ResidualMass {
+    /// Returns the residual mass of an appendage with modes.
+    fn new(appendage: &Appendage) -> Self {
+        let mass = appendage.mass.get();
+        let carried = appendage.participations().into_iter().map(|(own, _)| own.component_mul(&own));
+        let share = Vector::repeat(1.0) - carried.sum::<Vector>() / mass;
+        Self { appendage: appendage.name.clone(), mass_kg: mass, share: three(&share.sup(&Vector::zeros())) }
+    }
+}
+
 /// Point of the structure, and its response to a torque on the hub.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PointResponse {
@@ -94,6 +118,7 @@ impl SpacecraftModes {
                 effective_inertia_kg_m2: three(&rotation.component_mul(&rotation)),
                 first_moments: part.knows_moments,
             });
+        let flexible = scenario.appendage.iter().filter(|own| !own.participations().is_empty());
         let inertia = &craft.model.inertia;
         let rotations = craft.model.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
         let on = |name: &str| {
@@ -121,6 +146,7 @@ impl SpacecraftModes {
             whole_damping: craft.model.articulation.is_some()
                 || craft.model.coupling.as_ref().is_some_and(|coupling| coupling.couples_by_damping),
             clamped: clamped.collect(),
+            residual: flexible.map(ResidualMass::new).collect(),
             points: points.collect(),
             turned: scenario
                 .study

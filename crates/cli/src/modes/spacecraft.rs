@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use flexsc_core::analysis::body_poles::WhirlPoles;
-use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
+use flexsc_core::analysis::spacecraft_modes::{ResidualMass, SpacecraftModes};
 use flexsc_core::formats::count::counted;
 use flexsc_core::numerics::attitude::AXES;
 use serde_json::{Value as Json, json};
@@ -109,6 +109,13 @@ impl Spacecraft {
             rows.push(row);
         }
         print_table(&rows, 1);
+        for ResidualMass { appendage, mass_kg, share } in &parts.residual {
+            let [x, y, z] = share.map(|part| unsigned_zero(100.0 * part, 1));
+            say!(
+                "  {appendage}: {x} % of {} kg along x, {y} % along y and {z} % along z are in no mode, and follow the root as if rigid",
+                digits(*mass_kg)
+            );
+        }
     }
 
     /// Prints the poles with whirl.
