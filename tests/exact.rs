@@ -39,13 +39,10 @@ fn no_log_has_a_part_in_the_metrics() {
         };
         let at = |period: &str| scenario(&name, &[("duration", duration), ("log.period", period)]);
         let alone = beside(&at("0.1"), ());
-        for period in ["0.01", "0.1", "0.37", "10.0"] {
-            let scenario = at(period);
-            for detail in [Detail::Events, Detail::Full] {
-                let logged = beside(&scenario, Trace::new(detail));
-                // Compared as text, with digits for all bits, because NaN does not equal NaN.
-                assert_eq!(alone.to_json().to_string(), logged.to_json().to_string(), "{name}, {period} s");
-            }
+        for (period, detail) in [("0.01", Detail::Full), ("0.37", Detail::Events), ("0.37", Detail::Full)] {
+            let logged = beside(&at(period), Trace::new(detail));
+            // Compared as text, with digits for all bits, because NaN does not equal NaN.
+            assert_eq!(alone.to_json().to_string(), logged.to_json().to_string(), "{name}, {period} s");
         }
         seen += 1;
     }

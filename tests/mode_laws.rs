@@ -113,7 +113,10 @@ fn two_in_turn(body: &Body) -> [usize; 2] {
     let (mut run, mut refused, mut wrong) = (0, 0, Vec::new());
     let laws = || LAWS.into_iter().filter(|law| law.0 != SEQUENCE);
     for actuator in ACTUATORS {
-        for (law, second) in laws().flat_map(|law| laws().map(move |second| (law, second))) {
+        // Each pair once: the first law follows the second again.
+        for (law, second) in
+            laws().enumerate().flat_map(|(place, law)| laws().skip(place).map(move |second| (law, second)))
+        {
             let on =
                 |law: Kind, (estimator, sensor): (Kind, Kind)| Parts { law, sensor, estimator, actuator };
             let both = readers().find(|of| [law, second].iter().all(|law| is_accepted(body, on(*law, *of))));
@@ -150,7 +153,7 @@ fn two_laws_in_turn_keep_the_invariants() {
 }
 
 /// Pairs of laws that are run on each body, at least.
-const PAIRS: [usize; 5] = [272, 893, 942, 942, 665];
+const PAIRS: [usize; 5] = [156, 500, 528, 528, 373];
 
 /// A body with one angle, from this angle and rate on.
 fn one_angle([angle, rate]: [f64; 2], duration: f64) -> String {

@@ -368,7 +368,7 @@ fn the_worst_mount_is_the_least_damped() {
     assert!(case["worst"].as_f64() > case["nominal"].as_f64().map(|nominal| 1.5 * nominal), "{case}");
 }
 
-/// What the modes leave of 18 kg: 18 - 3.1² - 0.2² along x, and so on. A mount leaves nothing.
+/// Masses left by the modes of 18 kg: 18 - 3.1² - 0.2² along x, and so on; a mount leaves none.
 #[test]
 fn the_mass_that_no_mode_carries_is_printed() {
     let dir = Dir::new();
