@@ -26,7 +26,7 @@ impl RequiredLimit {
     }
 
     /// Returns the least contrast of an image that a requirement accepts.
-    pub fn of_contrast(requirement: &ContrastRequirement) -> Self {
+    pub fn from_contrast(requirement: &ContrastRequirement) -> Self {
         let unit = ReaderUnits::Engineering.fitting(requirement.least, "");
         Self { limit: requirement.least, is_least: true, text: unit.limit(requirement.least, None), unit }
     }

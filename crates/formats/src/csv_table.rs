@@ -38,6 +38,20 @@ pub trait TableKind {
     fn check(rows: &[Vec<f64>], place: &dyn Fn(usize) -> String) -> Result<(), String>;
 }
 
+/// Checks that the first numbers of rows are increasing positive frequencies (Hz).
+pub(crate) fn check_frequencies(rows: &[Vec<f64>], place: &dyn Fn(usize) -> String) -> Result<(), String> {
+    let mut before = 0.0;
+    for (index, row) in rows.iter().enumerate() {
+        let frequency = row[0];
+        if !(frequency > before && frequency < 1e9) {
+            let why = format!("must have increasing positive frequencies, got {frequency} Hz");
+            return Err(format!("{}: {why}", place(index)));
+        }
+        before = frequency;
+    }
+    Ok(())
+}
+
 /// Rows of numbers, or the path of the file that contains them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CsvTable<K> {

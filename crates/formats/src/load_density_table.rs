@@ -1,6 +1,6 @@
 //! Spectral densities of forces and torques over frequency.
 
-use crate::csv_table::{CsvTable, TableKind};
+use crate::csv_table::{CsvTable, TableKind, check_frequencies};
 
 /// Rows of frequency and densities, by increasing frequency.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,17 +24,11 @@ impl TableKind for LoadDensityRows {
     const LONGEST: u64 = 1 << 22;
 
     fn check(rows: &[Vec<f64>], place: &dyn Fn(usize) -> String) -> Result<(), String> {
-        let mut before = 0.0;
+        check_frequencies(rows, place)?;
         for (index, row) in rows.iter().enumerate() {
-            let frequency = row[0];
-            if !(frequency > before && frequency < 1e9) {
-                let why = format!("must have increasing positive frequencies, got {frequency} Hz");
-                return Err(format!("{}: {why}", place(index)));
-            }
             if let Some(value) = row[1..].iter().find(|value| !(**value >= 0.0 && value.is_finite())) {
                 return Err(format!("{}: must have densities from 0 on, got {value}", place(index)));
             }
-            before = frequency;
         }
         Ok(())
     }

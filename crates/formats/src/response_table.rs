@@ -1,6 +1,6 @@
 //! Measured responses over frequency: complex numbers as real and imaginary part, or as magnitude and phase.
 
-use crate::csv_table::{CsvTable, TableKind};
+use crate::csv_table::{CsvTable, TableKind, check_frequencies};
 
 /// Rows of frequency and a complex number, by increasing frequency.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,17 +22,11 @@ impl TableKind for ResponseRows {
     const LONGEST: u64 = 1 << 24;
 
     fn check(rows: &[Vec<f64>], place: &dyn Fn(usize) -> String) -> Result<(), String> {
-        let mut before = 0.0;
+        check_frequencies(rows, place)?;
         for (index, row) in rows.iter().enumerate() {
-            let frequency = row[0];
-            if !(frequency > before && frequency < 1e9) {
-                let why = format!("must have increasing positive frequencies, got {frequency} Hz");
-                return Err(format!("{}: {why}", place(index)));
-            }
             if let Some(value) = row[1..].iter().find(|value| !value.is_finite()) {
                 return Err(format!("{}: must have finite numbers, got {value}", place(index)));
             }
-            before = frequency;
         }
         Ok(())
     }

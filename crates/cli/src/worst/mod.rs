@@ -224,7 +224,7 @@ impl WorstArgs {
                 let search = ContrastSearch { requirement: own.clone(), most_loops: self.points as usize };
                 let found = search.run(scenario, stop_requested);
                 let case = found.map_err(|error| CliError::worst_case(&scenario.name, error))?;
-                Ok((case, Some(RequiredLimit::of_contrast(own))))
+                Ok((case, Some(RequiredLimit::from_contrast(own))))
             })
             .collect()
     }

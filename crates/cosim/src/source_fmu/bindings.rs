@@ -99,7 +99,7 @@ impl SourceModel {
                 own.push(output_name(call.name, channel).map(|name| {
                     let unit =
                         if name == "command" { command_unit(scenario) } else { channel.unit_of_numbers() };
-                    let values = NamedValues { unit, ..NamedValues::of_channel(name, channel) };
+                    let values = NamedValues { unit, ..NamedValues::from_channel(name, channel) };
                     add(&mut table, &NamedValues { start: Vec::new(), ..values }, Causality::Output)
                 }));
             }
@@ -158,7 +158,7 @@ impl InputBinder<'_> {
         let first = own.and_then(|known| known.fields.first()).map(|field| field.name);
         let name = name.or(first).unwrap_or("value");
         let path = format!("{}.{name}", self.group(sensor));
-        add(&mut self.table, &NamedValues::of_channel(path, channel), Causality::Input)
+        add(&mut self.table, &NamedValues::from_channel(path, channel), Causality::Input)
     }
 
     /// Returns the source of a function's input.
@@ -196,7 +196,7 @@ impl InputBinder<'_> {
             (_, Some(quantity)) => quantity.path(),
             (_, None) => format!("{prefix}{}", channel.name),
         };
-        let mut values = NamedValues::of_channel(name, channel);
+        let mut values = NamedValues::from_channel(name, channel);
         match (call.name, channel.name.as_str()) {
             ("start", own) => values.start = self.run_start(call, own),
             ("enter", _) => values.start = vec![-1.0],
@@ -253,7 +253,7 @@ impl InputBinder<'_> {
         for own in &self.exported.parameters {
             let channel = Channel::real(&own.name, &own.about, 1, 1.0);
             let name = format!("parameter.{}", own.name);
-            let values = NamedValues { start: vec![own.value], ..NamedValues::of_channel(name, &channel) };
+            let values = NamedValues { start: vec![own.value], ..NamedValues::from_channel(name, &channel) };
             add(&mut self.table, &values, Causality::Parameter);
         }
     }

@@ -23,7 +23,7 @@ pub struct NamedValues<'a> {
 
 impl<'a> NamedValues<'a> {
     /// Creates the variables of a channel.
-    pub fn of_channel(name: String, channel: &'a Channel) -> Self {
+    pub fn from_channel(name: String, channel: &'a Channel) -> Self {
         let unit = channel.unit_of_numbers();
         let start = match channel.kind {
             NumberKind::Real if channel.is_unit && channel.count == 4 => vec![1.0],

@@ -11,19 +11,19 @@ pub const VECTOR: [&str; 3] = ["x", "y", "z"];
 pub const QUATERNION: [&str; 4] = ["w", "x", "y", "z"];
 
 /// Returns a vector or a quaternion with these values of its components.
-fn of_components<T: AsRef<str>>(plan: &Plan<'_>, kind: &str, names: &[&str], values: &[T]) -> String {
+fn compound_literal<T: AsRef<str>>(plan: &Plan<'_>, kind: &str, names: &[&str], values: &[T]) -> String {
     let each = names.iter().zip(values).map(|(name, value)| format!(".{name} = {}", value.as_ref()));
     format!("({}){{ {} }}", plan.type_name(kind), each.collect::<Vec<_>>().join(", "))
 }
 
 /// Returns a vector of three values.
 pub fn vector<T: AsRef<str>>(plan: &Plan<'_>, values: &[T; 3]) -> String {
-    of_components(plan, "Vector3", &VECTOR, values)
+    compound_literal(plan, "Vector3", &VECTOR, values)
 }
 
 /// Returns a quaternion of four values.
 pub fn quaternion<T: AsRef<str>>(plan: &Plan<'_>, values: &[T; 4]) -> String {
-    of_components(plan, "Quaternion", &QUATERNION, values)
+    compound_literal(plan, "Quaternion", &QUATERNION, values)
 }
 
 /// Returns the vector of the first three elements of an array.
