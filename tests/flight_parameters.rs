@@ -23,7 +23,7 @@ fn replay(dir: &Dir, driver: &str, vectors: &str) -> (bool, String) {
         .args(
             "-std=c99 -O2 -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Werror -I out".split(' '),
         )
-        .args([driver, "out/sat.c", "out/sat_parameters.c", "-o", "replay"])
+        .args([driver, "out/sat.c", "-o", "replay"])
         .current_dir(dir.path("."))
         .output()
         .expect("gcc runs");

@@ -38,6 +38,9 @@ pub struct ExportCArgs {
     /// Most calls of the run to export as vectors
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=MOST_CALLS))]
     calls: u64,
+    /// Language of the code
+    #[arg(long = "as", value_name = "LANGUAGE", default_value = "c")]
+    language: LanguageName,
     /// Add the control system as an app of cFS or a component of F Prime; may be given twice
     #[arg(long, value_name = "GUEST")]
     guest: Vec<GuestName>,
@@ -56,6 +59,15 @@ pub enum GuestName {
     Cfs,
     /// F Prime
     Fprime,
+}
+
+/// Language of the exported code.
+#[derive(Copy, Clone, PartialEq, clap::ValueEnum)]
+pub enum LanguageName {
+    /// C99
+    C,
+    /// Crate of Rust without the standard library
+    Rust,
 }
 
 /// Precision of the flight computer.
@@ -127,8 +139,18 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         let fault = NotExportable::new("flight_precision", reason);
         return Err(refused(&args.scenario, ExportError::Vectors(VectorError::NotExportable(fault))));
     }
-    let package = package::export(&scenario, origin, &prefix, args.calls as usize, &guests)
-        .map_err(|error| refused(&args.scenario, error))?;
+    let is_rust = args.language == LanguageName::Rust;
+    if is_rust && !guests.is_empty() {
+        return Err(CliError::Arguments(
+            "--guest: must be left out with `--as rust`: guests are in C".to_owned(),
+        ));
+    }
+    let package = if is_rust {
+        package::export_rust(&scenario, origin, &prefix, args.calls as usize)
+    } else {
+        package::export(&scenario, origin, &prefix, args.calls as usize, &guests)
+    };
+    let package = package.map_err(|error| refused(&args.scenario, error))?;
     if args.complete
         && let Some(part) = package.excluded_parts.iter().find(|part| !part.is_supplied)
     {
@@ -145,10 +167,12 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         files::refuse_other(path, bytes, args.force)?;
     }
     files::write_within(&written)?;
+    let name_of = |name: &str| if is_rust { name.to_owned() } else { format!("{prefix}_{name}") };
     eprintln!(
-        "{}: {prefix}.c with {}; {} calls of the run as vectors",
+        "{}: {} with {}; {} calls of the run as vectors",
         args.out.display(),
-        package.calls.iter().map(|call| format!("{prefix}_{}", call.name)).collect::<Vec<_>>().join(", "),
+        if is_rust { format!("crate {prefix}") } else { format!("{prefix}.c") },
+        package.calls.iter().map(|call| name_of(call.name)).collect::<Vec<_>>().join(", "),
         package.vectors
     );
     for own in &package.accuracy {
@@ -159,7 +183,12 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         let what = if part.is_supplied { "input of it" } else { "not part of it" };
         eprintln!("{what}: {}; you must {}", part.key, part.duty);
     }
-    eprintln!("`make -C {} check` compares them by bits", args.out.display());
+    if is_rust {
+        let manifest = args.out.join("Cargo.toml");
+        eprintln!("`cargo test --manifest-path {}` compares them by bits", manifest.display());
+    } else {
+        eprintln!("`make -C {} check` compares them by bits", args.out.display());
+    }
     for guest in guests {
         let directory = args.out.join(guest.directory());
         eprintln!("`make -C {} check` replays them through the {}", directory.display(), guest.about());

@@ -8,6 +8,7 @@
 
 pub mod control_system;
 mod flight_sources;
+mod glue;
 pub mod package;
 pub mod self_test;
 pub mod translate;

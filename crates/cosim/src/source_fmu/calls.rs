@@ -276,7 +276,7 @@ impl CallWriter<'_> {
             let _ = writeln!(
                 text,
                 "    if ({prefix}_set_parameters(&run->state, &parameters) != 0) {{\n        \
-                 return \"a parameter is beyond its limits, which {prefix}_parameters.c has\";\n    }}"
+                 return \"a parameter is beyond its limits, which {prefix}.c has\";\n    }}"
             );
         }
         if self.model.call("start").is_some() {

@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 
 use super::Plan;
-use super::signature::{has_time, inits_at_time};
 use crate::control_system::{CallLayout, Channel, NumberKind};
 use crate::self_test::{BLOCK, EXTREME_BLOCK, SEED, cycle_milliseconds, extremes};
 
@@ -88,7 +87,7 @@ fn table(plan: &Plan<'_>, name: &str, of_call: fn(&CallLayout) -> &Vec<Channel>,
 /// Writes the macro that sets the state at a time.
 fn init(plan: &Plan<'_>, text: &mut String) {
     let prefix = plan.prefix;
-    let _ = if inits_at_time(plan) {
+    let _ = if plan.inits_at_time() {
         let ticks = format!("({prefix}_ticks){{ .whole = (int64_t)(time)[0], .part = (int64_t)(time)[1] }}");
         writeln!(text, "#define INIT(state, time) {prefix}_init(state, {ticks})\n")
     } else {
@@ -99,13 +98,13 @@ fn init(plan: &Plan<'_>, text: &mut String) {
 /// Writes the function that calls a function of the control system with words.
 fn call(plan: &Plan<'_>, text: &mut String) {
     let prefix = plan.prefix;
-    let now = if has_time(plan) { "now, " } else { "" };
+    let now = if plan.has_time() { "now, " } else { "" };
     let _ = writeln!(
         text,
         "/* Calls the function with this index with the words of its inputs, and writes the words of its outputs. */\n\
          static void call(size_t index, {prefix}_state *state, const uint64_t *time, const uint64_t *in, uint64_t *out)\n{{"
     );
-    if has_time(plan) {
+    if plan.has_time() {
         let _ = writeln!(
             text,
             "    const {prefix}_ticks now = {{ .whole = (int64_t)time[0], .part = (int64_t)time[1] }};\n"

@@ -5,8 +5,9 @@ use flexsc_core::numerics::time::Span;
 use flexsc_flight_precision::Precision;
 use serde_json::{Value, json};
 
-use super::{Plan, main_loop, start_values};
+use super::{Plan, main_loop};
 use crate::control_system::{CallLayout, Channel, NumberKind};
+use crate::glue;
 
 /// Returns the interface as JSON.
 pub fn interface(plan: &Plan<'_>, scenario: &Scenario) -> String {
@@ -61,7 +62,7 @@ fn function(plan: &Plan<'_>, call: &CallLayout) -> Value {
         "period_s": call.period,
         "inputs": list(&call.inputs),
         "outputs": list(&call.outputs),
-        "run_0": start_values::start_inputs(plan, call),
+        "run_0": glue::start_inputs(plan, call),
     })
 }
 

@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 
 use super::Plan;
-use super::signature::{has_time, inits_at_time};
 use crate::control_system::CallLayout;
 use crate::self_test::cycle_milliseconds;
 
@@ -22,7 +21,7 @@ pub fn main_loop(plan: &Plan<'_>) -> String {
         "/* Main loop around {prefix}.c: an example of the order of calls. Replace the functions `read_*` and `write_*`, and the clock. */\n\n\
          #include \"{prefix}.h\"\n\n#include <stdio.h>\n#include <string.h>\n\n"
     );
-    if has_time(plan) {
+    if plan.has_time() {
         let _ = writeln!(
             text,
             "/* Time on board at the start: any. */\nstatic const {prefix}_ticks epoch = {{ .whole = 5000, .part = 0 }};\n\n\
@@ -47,7 +46,7 @@ pub fn main_loop(plan: &Plan<'_>) -> String {
             "/* Passes the outputs of `{prefix}_{name}` on. */\nstatic void write_{name}(const {prefix}_{name}_output *output)\n{{\n    (void)output;\n}}\n"
         );
     }
-    let init = if inits_at_time(plan) { ", time_of(0)" } else { "" };
+    let init = if plan.inits_at_time() { ", time_of(0)" } else { "" };
     let _ = writeln!(
         text,
         "int main(void)\n{{\n    static {prefix}_state state;\n\n    {prefix}_init(&state{init});"
@@ -73,7 +72,7 @@ pub fn main_loop(plan: &Plan<'_>) -> String {
 /// Writes a call with its inputs and outputs.
 fn one(plan: &Plan<'_>, call: &CallLayout, time: &str, indent: &str, text: &mut String) {
     let (prefix, name) = (plan.prefix, call.name);
-    let now = if has_time(plan) { format!("{time}, ") } else { String::new() };
+    let now = if plan.has_time() { format!("{time}, ") } else { String::new() };
     let _ = writeln!(
         text,
         "{indent}{prefix}_{name}_input {name}_input;\n{indent}{prefix}_{name}_output {name}_output;\n{indent}read_{name}(&{name}_input);\n\

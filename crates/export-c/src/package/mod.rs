@@ -1,31 +1,15 @@
 //! Files of an exported control system: header, source, driver, start-up code of boards, Makefile, vectors and a description.
 
 mod accuracy;
-mod actuation_calls;
-mod b_dot_calls;
-mod calls;
 mod choices;
-mod compensator_calls;
 mod driver;
-mod estimator_calls;
 mod guests;
 mod header;
-mod initialiser;
 mod interface;
-mod kalman_calls;
-mod law_calls;
-mod law_scope;
 mod main_loop;
-mod modes;
-mod momentum_calls;
-mod parameters;
-mod rate_calls;
-mod shim;
-mod signature;
+mod rust_crate;
 mod source;
-mod start_values;
 mod static_files;
-mod supervisor_calls;
 
 use flexsc_core::Scenario;
 use flexsc_flight_precision::Precision;
@@ -33,13 +17,15 @@ use sha2::{Digest, Sha256};
 
 use crate::control_system::{CallLayout, ControlSystem, ExcludedPart};
 use crate::flight_sources::sources_in;
+use crate::glue::{self, ModulePlan};
 use crate::self_test::self_tests;
-use crate::translate::{Translation, TranslationError, in_single, translate_called};
+use crate::translate::{SourceFile, Translation, TranslationError, in_single, translate_library};
 use crate::vectors::{self, CallVector, VectorError};
 
+pub use crate::glue::FlightParameter;
 pub use accuracy::OutputAccuracy;
 pub use guests::Guest;
-pub use parameters::FlightParameter;
+pub use rust_crate::export_rust;
 
 /// Numbers of cycles for which the hash of the self-test is exported.
 pub const HASHED_CYCLES: [u64; 3] = [1000, 20_000, 1_000_000];
@@ -105,15 +91,17 @@ struct Plan<'a> {
     origin: ExportOrigin<'a>,
     /// SHA-256 of the scenario with these changes and all defaults.
     digest: &'a str,
-    system: &'a ControlSystem,
-    calls: &'a [CallLayout],
     /// Parts of the control loop that are not in the code.
     excluded_parts: &'a [ExcludedPart],
-    /// Numbers that are tuned in flight.
-    parameters: &'a [FlightParameter],
-    /// Inputs with which estimators start in run 0; `None` without an estimator, or without vectors.
-    run_start: Option<&'a [u64]>,
-    precision: Precision,
+    module: ModulePlan<'a>,
+}
+
+impl<'a> std::ops::Deref for Plan<'a> {
+    type Target = ModulePlan<'a>;
+
+    fn deref(&self) -> &ModulePlan<'a> {
+        &self.module
+    }
 }
 
 impl Plan<'_> {
@@ -130,11 +118,6 @@ impl Plan<'_> {
     /// Returns C with the type of the numbers in which the code computes.
     fn in_precision(&self, text: String) -> String {
         if self.precision.is_double() { text } else { in_single(&text) }
-    }
-
-    /// Returns the name in C of a type of the flight code.
-    fn type_name(&self, name: &str) -> String {
-        format!("{}_{}", self.prefix, snake(name))
     }
 }
 
@@ -165,7 +148,7 @@ impl Prepared {
             excluded_parts: system.excluded_parts(scenario),
             effective,
             digest,
-            parameters: parameters::parameters(&system),
+            parameters: glue::parameters(&system),
             precision: scenario.flight_precision,
             system,
         })
@@ -177,12 +160,14 @@ impl Prepared {
             prefix,
             origin,
             digest: &self.digest,
-            system: &self.system,
-            calls: &self.calls,
             excluded_parts: &self.excluded_parts,
-            parameters: &self.parameters,
-            run_start: start_values::find(&self.calls, &self.vectors),
-            precision: self.precision,
+            module: ModulePlan {
+                system: &self.system,
+                calls: &self.calls,
+                parameters: &self.parameters,
+                run_start: glue::find_run_start(&self.calls, &self.vectors),
+                precision: self.precision,
+            },
         }
     }
 }
@@ -191,23 +176,21 @@ impl Prepared {
 struct Code {
     header: String,
     source: String,
-    /// Check and change of the parameters; `None` without parameters.
-    parameters: Option<String>,
     translation: Translation,
 }
 
 impl Code {
     /// Writes the code of a control system.
     fn new(plan: &Plan<'_>) -> Result<Self, ExportError> {
-        let functions = plan.in_precision(calls::functions(plan));
-        let sources = sources_in(plan.precision);
+        let module = plan.module();
+        let mut sources = sources_in(plan.precision);
+        sources.push(SourceFile { path: "control_system.rs", module: "control_system", text: &module.text });
         let choices = choices::constant_choices(plan.system);
-        let translation = translate_called(&sources, &functions, plan.prefix, &choices)
-            .map_err(ExportError::Translation)?;
+        let translation =
+            translate_library(&sources, plan.prefix, &choices).map_err(ExportError::Translation)?;
         Ok(Self {
-            header: plan.in_precision(header::header(plan, &translation)),
-            source: plan.in_precision(source::source(plan, &translation, &functions)),
-            parameters: parameters::source(plan).map(|source| plan.in_precision(source)),
+            header: header::header(plan, &translation),
+            source: source::source(plan, &translation),
             translation,
         })
     }
@@ -227,7 +210,7 @@ pub fn export(
 ) -> Result<Package, ExportError> {
     let prepared = Prepared::new(scenario, most)?;
     let plan = prepared.plan(origin, prefix);
-    let Code { header, source, parameters, translation } = Code::new(&plan)?;
+    let Code { header, source, translation } = Code::new(&plan)?;
     let vectors = &prepared.vectors;
     let accuracy =
         accuracy::output_accuracies(scenario, vectors).map_err(|fault| ExportError::Vectors(fault.into()))?;
@@ -245,7 +228,6 @@ pub fn export(
         text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len(), &accuracy)),
         PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(vectors) },
     ]);
-    files.extend(parameters.map(|source| text(format!("{prefix}_parameters.c"), source)));
     files
         .extend(static_files::board_files().map(|(path, content)| text(path.to_owned(), content.to_owned())));
     let Prepared { calls, vectors, excluded_parts, effective, .. } = prepared;
@@ -285,26 +267,13 @@ pub fn control_sources(
     // The start of the estimators is among the first calls.
     let prepared = Prepared::new(scenario, 64)?;
     let plan = prepared.plan(origin, prefix);
-    let Code { header, source, parameters, .. } = Code::new(&plan)?;
-    let mut files = vec![text(format!("{prefix}.h"), header), text(format!("{prefix}.c"), source)];
-    files.extend(parameters.map(|source| text(format!("{prefix}_parameters.c"), source)));
-    let (has_time, run_start) = (signature::has_time(&plan), plan.run_start.unwrap_or_default().to_vec());
+    let Code { header, source, .. } = Code::new(&plan)?;
+    let files = vec![text(format!("{prefix}.h"), header), text(format!("{prefix}.c"), source)];
+    let (has_time, run_start) = (plan.has_time(), plan.run_start.unwrap_or_default().to_vec());
     let Prepared { system, calls, parameters, effective, .. } = prepared;
     Ok(ControlSources { files, system, calls, parameters, run_start, has_time, effective })
 }
 
 fn text(path: String, content: String) -> PackageFile {
     PackageFile { path, bytes: content.into_bytes() }
-}
-
-/// Returns a name with underscores between its words, in lower case.
-fn snake(name: &str) -> String {
-    let mut words = String::new();
-    for (index, letter) in name.chars().enumerate() {
-        if letter.is_ascii_uppercase() && index > 0 {
-            words.push('_');
-        }
-        words.push(letter.to_ascii_lowercase());
-    }
-    words
 }

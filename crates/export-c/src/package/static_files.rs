@@ -39,29 +39,7 @@ pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize, accuracy: 
     for call in plan.calls {
         let _ = writeln!(text, "| `{prefix}_{}` | {} |", call.name, call.about);
     }
-    let changes =
-        plan.origin.changes.iter().map(|change| format!(", with `{change}`")).collect::<Vec<_>>().concat();
-    let _ = writeln!(
-        text,
-        "\nScenario: {}{changes}; `scenario.toml` has it with all defaults, SHA-256 `{}`. The text `{prefix}_version` has the hash in flight. \
-         The translated functions are part of flexsc, under MIT or Apache-2.0.",
-        plan.origin.file, plan.digest
-    );
-    if plan.excluded_parts.iter().all(|part| part.is_supplied) {
-        text.push_str("\nEvery part of the scenario's control loop is in this code.\n");
-    }
-    for (is_supplied, head) in
-        [(false, "Not part of this code"), (true, "Inputs from guidance and ephemerides")]
-    {
-        let parts: Vec<_> =
-            plan.excluded_parts.iter().filter(|part| part.is_supplied == is_supplied).collect();
-        if !parts.is_empty() {
-            let _ = writeln!(text, "\n{head}:\n\n| part of the scenario | the caller must |\n|---|---|");
-        }
-        for part in parts {
-            let _ = writeln!(text, "| `{}` | {} |", part.key, part.duty);
-        }
-    }
+    text.push_str(&origin(plan, &format!("text `{prefix}_version`")));
     let _ = write!(
         text,
         "\n`{prefix}.icd.json` has the interface: inputs and outputs with unit, frame and range, and the order of calls. `main_loop.c` is a main loop, \
@@ -80,5 +58,54 @@ pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize, accuracy: 
          fast-math. An output must not be compared by bits if it is NaN.\n",
         plan.numbers()
     );
+    text
+}
+
+/// Returns the description of the directory of a crate.
+pub fn readme_of_crate(plan: &Plan<'_>, vectors: usize, accuracy: &[OutputAccuracy]) -> String {
+    let name = plan.prefix;
+    let mut text = format!(
+        "# Control system of {}\n\nExported by flexsc {} as a crate: `no_std`, no heap, no dependencies and no unsafe code. `src/control_system.rs` has the functions, \
+         from the text that `flexsc export-c` translates to C; the other files are the flight code that flexsc calls in a run.\n\n| function | does |\n|---|---|\n",
+        plan.origin.file,
+        env!("CARGO_PKG_VERSION")
+    );
+    for call in plan.calls {
+        let _ = writeln!(text, "| `{name}::control_system::{}` | {} |", call.name, call.about);
+    }
+    text.push_str(&origin(plan, "constant `VERSION`"));
+    let _ = write!(
+        text,
+        "\nA state begins as `State::UNSET`, and `init` sets it. `cargo test` replays the {vectors} calls in `vectors.bin`, recorded in a run of flexsc, and compares every output by bits.\n"
+    );
+    text + &table(accuracy, vectors)
+}
+
+/// Returns the part about the scenario, the version, and the parts of the control loop that are not in the code.
+fn origin(plan: &Plan<'_>, version: &str) -> String {
+    let mut text = String::new();
+    let changes =
+        plan.origin.changes.iter().map(|change| format!(", with `{change}`")).collect::<Vec<_>>().concat();
+    let _ = writeln!(
+        text,
+        "\nScenario: {}{changes}; `scenario.toml` has it with all defaults, SHA-256 `{}`. The {version} has the hash in flight. \
+         The flight code is part of flexsc, under MIT or Apache-2.0.",
+        plan.origin.file, plan.digest
+    );
+    if plan.excluded_parts.iter().all(|part| part.is_supplied) {
+        text.push_str("\nEvery part of the scenario's control loop is in this code.\n");
+    }
+    for (is_supplied, head) in
+        [(false, "Not part of this code"), (true, "Inputs from guidance and ephemerides")]
+    {
+        let parts: Vec<_> =
+            plan.excluded_parts.iter().filter(|part| part.is_supplied == is_supplied).collect();
+        if !parts.is_empty() {
+            let _ = writeln!(text, "\n{head}:\n\n| part of the scenario | the caller must |\n|---|---|");
+        }
+        for part in parts {
+            let _ = writeln!(text, "| `{}` | {} |", part.key, part.duty);
+        }
+    }
     text
 }

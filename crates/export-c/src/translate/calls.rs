@@ -1,7 +1,7 @@
 //! Calls of functions of the crate, and their arguments.
 
 use syn::spanned::Spanned;
-use syn::{Expr, ExprCall, ExprMethodCall, ExprReference};
+use syn::{Expr, ExprArray, ExprCall, ExprMethodCall, ExprReference};
 
 use super::error::{Outcome, refuse};
 use super::evaluation::is_open;
@@ -215,6 +215,9 @@ impl FunctionBody<'_> {
                 _ => self.check_kind(written, &value.kind, Some(kind)).map(|()| value.text),
             };
         };
+        if let (Expr::Array(array), ValueKind::Slice { element, .. }) = (bare(expr), kind) {
+            return self.list_argument(array, element);
+        }
         let value = self.expression(expr, None)?;
         if !value.is_place {
             return refuse(
@@ -242,6 +245,19 @@ impl FunctionBody<'_> {
                 refuse(written.span(), found, self.program.show(kind))
             }
         }
+    }
+
+    /// Returns a list that is written as an argument; C has no array without elements.
+    fn list_argument(&mut self, array: &ExprArray, element: &ValueKind) -> Outcome<String> {
+        if array.elems.is_empty() {
+            return Ok("NULL, 0".to_owned());
+        }
+        let mut entries = Vec::new();
+        for entry in &array.elems {
+            entries.push(self.expression(entry, Some(element))?.text);
+        }
+        let (kind, count) = (self.names.plain_type(element), entries.len());
+        Ok(format!("({kind}[{count}]){{{}}}, {count}", entries.join(", ")))
     }
 
     /// Returns an array as an argument; a constant array of arrays has to be cast, as C has it.

@@ -23,7 +23,8 @@ pub(super) fn define_constant(program: &Program<'_>, names: &Names, index: usize
         return Ok(text);
     }
     let Some(kind) = program.constant_kind(index)? else { return Ok(text) };
-    let start = format!("static const {} = ", names.declaration(&kind, name));
+    let storage = if program.exported.contains(&index) { "" } else { "static " };
+    let start = format!("{storage}const {} = ", names.declaration(&kind, name));
     let Some(value) = initialiser(program, names, &kind, &value, 0) else {
         return refuse(
             item.span,
@@ -34,6 +35,13 @@ pub(super) fn define_constant(program: &Program<'_>, names: &Names, index: usize
     };
     push(&mut text, format_args!("{start}{value};\n"));
     Ok(text)
+}
+
+/// Returns the declaration of a constant for the header.
+pub(super) fn declare_constant(program: &Program<'_>, names: &Names, index: usize) -> Outcome<String> {
+    let Some(kind) = program.constant_kind(index)? else { return Ok(String::new()) };
+    let declared = names.declaration(&kind, names.item(index));
+    Ok(format!("{}extern const {declared};\n", comment(&program.items[index].docs, 0)))
 }
 
 /// Returns the initialiser of a value, on one line if it is short.

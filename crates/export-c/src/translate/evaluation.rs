@@ -261,6 +261,9 @@ pub(super) fn outside_constant(words: &[String]) -> Option<ConstantValue> {
             mathematical_constant(name).map(ConstantValue::Float)
         }
         ["f64", name] => float_constant(name).map(ConstantValue::Float),
+        ["f32", name @ ("INFINITY" | "NEG_INFINITY" | "NAN")] => {
+            float_constant(name).map(ConstantValue::Float)
+        }
         [kind, "MAX"] => IntegerKind::from_name(kind)
             .filter(|kind| *kind != IntegerKind::Usize)
             .map(|kind| ConstantValue::Integer(kind.range().1, kind)),

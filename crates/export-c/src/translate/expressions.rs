@@ -179,7 +179,11 @@ impl FunctionBody<'_> {
                 Ok(CExpression::value(float_literal(value), POSTFIX, ValueKind::F64))
             }
             Some(ConstantValue::Float(value)) => {
-                let bits = format!("UINT64_C({:#x})", value.to_bits());
+                let bits = if self.program.is_single {
+                    format!("UINT32_C({:#x})", (value as f32).to_bits())
+                } else {
+                    format!("UINT64_C({:#x})", value.to_bits())
+                };
                 Ok(self.helper(CHelper::FromBits, &[&bits], ValueKind::F64))
             }
             _ => {

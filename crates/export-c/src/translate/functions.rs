@@ -61,6 +61,8 @@ pub(super) struct FunctionBody<'p> {
 /// Function in C, with what it needs.
 pub(super) struct TranslatedFunction {
     pub text: String,
+    /// Declaration for the header, of a function of the C library.
+    pub prototype: String,
     pub needs: NeededParts,
 }
 
@@ -120,10 +122,15 @@ pub(super) fn translate_function(
         body.code.insert(0, &format!("(void){name};"));
     }
     let list = if parameters.is_empty() { "void".to_owned() } else { parameters.join(", ") };
-    let mut head = CodeWriter::new(0);
-    head.line(&format!("static {}({list}) {{", names.declaration(&kind.result, names.item(index))));
-    let text = format!("{}{}{}}}\n", comment(&item.docs, 0), head.text(), body.code.text());
-    Ok(Some(TranslatedFunction { text, needs: body.needs }))
+    let storage = if program.exported.contains(&index) { "" } else { "static " };
+    let head = |end: &str| {
+        let mut head = CodeWriter::new(0);
+        let declared = names.declaration(&kind.result, names.item(index));
+        head.line(&format!("{storage}{declared}({list}){end}"));
+        comment(&item.docs, 0) + &head.text()
+    };
+    let text = format!("{}{}}}\n", head(" {"), body.code.text());
+    Ok(Some(TranslatedFunction { text, prototype: head(";"), needs: body.needs }))
 }
 
 fn unused_names(local: &super::scopes::LocalName) -> Vec<String> {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use proc_macro2::Span;
 use syn::spanned::Spanned;
-use syn::{Block, Expr, Fields, Generics, ImplItem, Safety, Signature, Type, UseTree};
+use syn::{Block, Expr, Fields, Generics, ImplItem, Safety, Signature, Type, UseTree, Visibility};
 
 use super::comments::{is_kept, read_docs};
 use super::error::{Outcome, TranslationError, refuse};
@@ -39,6 +39,9 @@ pub(super) struct FlightItem {
     pub content: ItemContent,
 }
 
+/// Module whose public functions and constants are those of the C library.
+pub(super) const EXPORTED_MODULE: &str = "control_system";
+
 /// Items of all files.
 pub(super) struct Program<'a> {
     pub files: &'a [SourceFile<'a>],
@@ -49,6 +52,8 @@ pub(super) struct Program<'a> {
     pub by_path: HashMap<String, usize>,
     /// Path of an imported name, by module and name.
     pub imports: HashMap<(String, String), String>,
+    /// Public functions and constants of the module of the control system, in their order.
+    pub exported: Vec<usize>,
     /// True of a program in single precision.
     pub is_single: bool,
     choices: &'a ConstantChoices,
@@ -63,6 +68,7 @@ impl<'a> Program<'a> {
             items: Vec::new(),
             by_path: HashMap::new(),
             imports: HashMap::new(),
+            exported: Vec::new(),
             is_single: files.iter().any(|file| file.text.contains(": f32")),
             choices,
         };
@@ -94,7 +100,16 @@ impl<'a> Program<'a> {
         read_docs(&parsed.attrs, &mut docs);
         self.module_docs.push(docs);
         for item in parsed.items {
+            let is_public = matches!(
+                &item,
+                syn::Item::Fn(syn::ItemFn { vis: Visibility::Public(_), .. })
+                    | syn::Item::Const(syn::ItemConst { vis: Visibility::Public(_), .. })
+            );
+            let next = self.items.len();
             self.collect_item(file, item, blocks)?;
+            if is_public && self.items.len() > next && self.files[file].module == EXPORTED_MODULE {
+                self.exported.push(next);
+            }
         }
         Ok(())
     }

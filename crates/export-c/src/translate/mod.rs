@@ -34,4 +34,4 @@ pub use error::TranslationError;
 pub use literals::float_literal;
 pub use pruning::ConstantChoices;
 pub use single::in_single;
-pub use translation::{SourceFile, Translation, translate, translate_called};
+pub use translation::{SourceFile, Translation, translate, translate_library};

@@ -22,6 +22,7 @@ impl Names {
                 None => program.files[item.file].module.to_owned(),
             };
             let name = match &item.content {
+                _ if program.exported.contains(&index) => format!("{prefix}_{}", item.name.to_lowercase()),
                 ItemContent::Struct { .. } | ItemContent::Enum { .. } => {
                     format!("{prefix}_{}", snake_case(&item.name))
                 }

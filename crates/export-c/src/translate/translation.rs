@@ -1,9 +1,9 @@
 //! Translation of the items that some roots need.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::comments::comment;
-use super::constants::define_constant;
+use super::constants::{declare_constant, define_constant};
 use super::error::{Outcome, TranslationError};
 use super::functions::{TranslatedFunction, translate_function};
 use super::items::{ItemContent, Program};
@@ -34,7 +34,9 @@ pub struct Translation {
     pub guards: String,
     /// Sizes, enums and structs for the header, in order.
     pub declarations: String,
-    /// Helpers, constants and static functions for the .c file, in order.
+    /// Constants and functions of the C library, for the header.
+    pub prototypes: String,
+    /// Helpers, constants and functions for the .c file, in order.
     pub definitions: String,
     is_single: bool,
     names: BTreeMap<String, String>,
@@ -79,7 +81,7 @@ pub fn translate(
     roots: &[&str],
     prefix: &str,
 ) -> Result<Translation, TranslationError> {
-    translate_items(files, prefix, &ConstantChoices::default(), |program, _| {
+    translate_items(files, prefix, &ConstantChoices::default(), |program| {
         let find = |root: &&str| {
             program.find_absolute(root).ok_or_else(|| {
                 TranslationError::without_place(format!("the root `{root}`"), "paths `module::name` of items")
@@ -89,22 +91,14 @@ pub fn translate(
     })
 }
 
-/// Translates the functions that a text in C calls, without the branches that choices which are constant never take.
-pub fn translate_called(
+/// Translates the module `control_system` and what it needs, without the branches that choices which are constant never take. Its
+/// public functions and constants are those of the C library.
+pub fn translate_library(
     files: &[SourceFile<'_>],
-    callers: &str,
     prefix: &str,
     choices: &ConstantChoices,
 ) -> Result<Translation, TranslationError> {
-    let words: BTreeSet<&str> =
-        callers.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_').collect();
-    translate_items(files, prefix, choices, |program, names| {
-        let is_called = |index: &usize| {
-            let is_function = matches!(program.items[*index].content, ItemContent::Function { .. });
-            is_function && words.contains(names.item(*index))
-        };
-        Ok((0..program.items.len()).filter(is_called).collect())
-    })
+    translate_items(files, prefix, choices, |program| Ok(program.exported.clone()))
 }
 
 /// Translates the items that those need which `roots` returns; all items of the files are checked.
@@ -112,13 +106,13 @@ fn translate_items(
     files: &[SourceFile<'_>],
     prefix: &str,
     choices: &ConstantChoices,
-    roots: impl FnOnce(&Program<'_>, &Names) -> Outcome<Vec<usize>>,
+    roots: impl FnOnce(&Program<'_>) -> Outcome<Vec<usize>>,
 ) -> Result<Translation, TranslationError> {
     let program = Program::collect(files, choices)?;
     let names = Names::new(&program, prefix)?;
     let functions = translate_functions(&program, &names)?;
     refuse_recursion(&program, &functions)?;
-    let parts = reach(&program, &functions, &roots(&program, &names)?)?;
+    let parts = reach(&program, &functions, &roots(&program)?)?;
     let mut translation = Translation {
         is_single: program.is_single,
         includes: INCLUDES.to_owned(),
@@ -140,6 +134,13 @@ fn translate_items(
         };
         translation.declarations += &text;
         translation.declarations.push('\n');
+    }
+    for index in &program.exported {
+        translation.prototypes += &match &functions[*index] {
+            Some(function) => function.prototype.clone(),
+            None => declare_constant(&program, &names, *index)?,
+        };
+        translation.prototypes.push('\n');
     }
     let mut module = usize::MAX;
     let mut headed = Vec::new();
@@ -180,7 +181,7 @@ fn translate_functions(program: &Program<'_>, names: &Names) -> Outcome<Vec<Opti
 impl Translation {
     /// Returns the translation with floats for doubles.
     fn in_single(mut self) -> Self {
-        for text in [&mut self.declarations, &mut self.definitions] {
+        for text in [&mut self.declarations, &mut self.prototypes, &mut self.definitions] {
             *text = super::single::in_single(text);
         }
         self.guards = super::single::guards(&self.guards);

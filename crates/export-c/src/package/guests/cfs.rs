@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use sha2::{Digest, Sha256};
 
 use super::payload::Payload;
-use super::{camel, cfs_replay, named};
+use super::{cfs_replay, named};
 use crate::control_system::{CallLayout, Channel, NumberKind};
-use crate::package::signature::{has_time, inits_at_time};
-use crate::package::{PackageFile, Plan, parameters, text};
+use crate::glue::camel;
+use crate::package::{PackageFile, Plan, text};
 
 /// Longest name of a pipe: cFS keeps 20 bytes of it.
 const LONGEST_PIPE: usize = 19;
@@ -25,7 +25,7 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
     let file = |path: String, template: &str| text(path, named(template, plan));
     let table_name = table_name(plan);
     let with_table = |text: String| if plan.parameters.is_empty() { String::new() } else { text };
-    let checked = format!(" $(APP)/fsw/src/LOWER_parameters.c $(APP)/fsw/tables/{table_name}.c");
+    let checked = format!(" $(APP)/fsw/tables/{table_name}.c");
     let tables = format!("add_cfe_tables(LOWER_app fsw/tables/{table_name}.c)\n");
     let mut files = vec![
         file(
@@ -34,9 +34,7 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
         ),
         file(
             format!("{app}/CMakeLists.txt"),
-            &include_str!("../files/cfs/CMakeLists.txt")
-                .replace("MORE", &with_table(" fsw/src/LOWER_parameters.c".to_owned()))
-                .replace("TABLES", &with_table(tables)),
+            &include_str!("../files/cfs/CMakeLists.txt").replace("TABLES", &with_table(tables)),
         ),
         file(format!("{app}/arch_build.cmake"), include_str!("../files/cfs/arch_build.cmake")),
         file(format!("{app}/mission_build.cmake"), include_str!("../files/cfs/mission_build.cmake")),
@@ -62,9 +60,8 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
         ),
         file("cfs/stubs/replay.c".to_owned(), &cfs_replay::replay(plan)),
     ];
-    if let Some(source) = parameters::source(plan) {
+    if !plan.parameters.is_empty() {
         files.extend([
-            text(format!("{app}/fsw/src/{prefix}_parameters.c"), source),
             file(format!("{app}/fsw/tables/{table_name}.c"), &table(plan)),
             file(
                 "cfs/stubs/cfe_tbl_filedef.h".to_owned(),
@@ -221,7 +218,7 @@ fn app_header(plan: &Plan<'_>) -> String {
     if !plan.parameters.is_empty() {
         outputs.push_str("    /* Table of parameters, and those in use. */\n    CFE_TBL_Handle_t Table;\n    LOWER_parameters Parameters;\n");
     }
-    if inits_at_time(plan) {
+    if plan.inits_at_time() {
         outputs.push_str("    /* True from the first inputs on, at whose time the control system starts. */\n    bool HasStarted;\n");
     }
     include_str!("../files/cfs/app.h").replace("LAW", &camel(law(plan).name)).replace("OUTPUTS", &outputs)
@@ -258,7 +255,7 @@ fn app_source(plan: &Plan<'_>) -> String {
     let subscribed: Vec<String> =
         names(plan, "INPUT").iter().map(|name| format!("UPPER_APP_{name}_MID")).collect();
     // Modes begin at the time of the first inputs.
-    let is_later = inits_at_time(plan);
+    let is_later = plan.inits_at_time();
     let has_table = !plan.parameters.is_empty();
     let set = "\n    (void)LOWER_set_parameters(&UPPER_APP_Data.State, &UPPER_APP_Data.Parameters);";
     let start = if is_later {
@@ -299,7 +296,7 @@ fn function(plan: &Plan<'_>, index: usize, call: &CallLayout) -> String {
         copy(channel, "Input.", "In->", " != 0", &mut text);
     }
     let time = "(LOWER_ticks){ .whole = In->now_whole, .part = In->now_part }";
-    if inits_at_time(plan) {
+    if plan.inits_at_time() {
         let _ = writeln!(
             text,
             "    if (!UPPER_APP_Data.HasStarted) {{\n        LOWER_init(&UPPER_APP_Data.State, {time});\n{}        UPPER_APP_Data.HasStarted = true;\n    }}",
@@ -310,9 +307,9 @@ fn function(plan: &Plan<'_>, index: usize, call: &CallLayout) -> String {
             }
         );
     }
-    let now = if has_time(plan) { format!("{time}, ") } else { String::new() };
+    let now = if plan.has_time() { format!("{time}, ") } else { String::new() };
     let _ = writeln!(text, "    LOWER_{lower}(&UPPER_APP_Data.State, {now}&Input, &Output);");
-    if has_time(plan) {
+    if plan.has_time() {
         text.push_str("    Out->now_whole = In->now_whole;\n    Out->now_part = In->now_part;\n");
     }
     for channel in &call.outputs {

@@ -2,11 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::camel;
 use super::payload::Payload;
 use crate::control_system::{CallLayout, NumberKind};
+use crate::glue::camel;
 use crate::package::Plan;
-use crate::package::signature::has_time;
 
 /// Returns the program that replays the vectors through the messages of the app.
 pub(super) fn replay(plan: &Plan<'_>) -> String {
@@ -57,7 +56,7 @@ pub(super) fn replay(plan: &Plan<'_>) -> String {
     }
     let most = plan.calls.iter().map(CallLayout::output_words).max().unwrap_or(0).max(1);
     let most_input = plan.calls.iter().map(CallLayout::input_words).max().unwrap_or(0);
-    let time = if has_time(plan) { "#define HAS_TIME\n" } else { "" };
+    let time = if plan.has_time() { "#define HAS_TIME\n" } else { "" };
     let table = if plan.parameters.is_empty() { "" } else { "#define HAS_PARAMETERS\n" };
     let _ = writeln!(
         tables,

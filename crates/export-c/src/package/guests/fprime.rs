@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 
 use super::fprime_ports::{arrays, handled, type_name};
-use super::{camel, fprime_stubs, named};
+use super::{fprime_stubs, named};
 use crate::control_system::{CallLayout, Channel};
-use crate::package::signature::{has_time, inits_at_time};
-use crate::package::{PackageFile, Plan, parameters, text};
+use crate::glue::camel;
+use crate::package::{PackageFile, Plan, text};
 
 /// Keywords of F Prime's modelling language among the words that a member may have as its name.
 const KEYWORDS: [&str; 42] = [
@@ -65,34 +65,21 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
             .replace("LOWER_LAW", &format!("LOWER_{}", law(plan).name));
         text(path, named(&template, plan))
     };
-    let has_parameters = !plan.parameters.is_empty();
-    let more = |text: &'static str| if has_parameters { text } else { "" };
-    let listed = more("    \"${CMAKE_CURRENT_LIST_DIR}/LOWER_parameters.c\"\n");
-    let mut files = vec![
-        file(
-            format!("{directory}/CMakeLists.txt"),
-            &include_str!("../files/fprime/CMakeLists.txt").replace("MORE", listed),
-        ),
+    vec![
+        file(format!("{directory}/CMakeLists.txt"), include_str!("../files/fprime/CMakeLists.txt")),
         file(format!("{directory}/{component}.cpp"), &implementation(plan)),
         file(format!("{directory}/{component}.fpp"), &model(plan)),
         file(format!("{directory}/{component}.hpp"), &class(plan)),
         text(format!("{directory}/{prefix}.c"), source.to_owned()),
         text(format!("{directory}/{prefix}.h"), header.to_owned()),
-        file(
-            "fprime/Makefile".to_owned(),
-            &include_str!("../files/fprime/Makefile").replace("MORE", more(" LOWER_parameters.o")),
-        ),
+        file("fprime/Makefile".to_owned(), include_str!("../files/fprime/Makefile")),
         file(
             format!("fprime/stubs/Components/{component}/{component}ComponentAc.hpp"),
             &fprime_stubs::stub(plan),
         ),
         file("fprime/stubs/framework.fpp".to_owned(), include_str!("../files/fprime/framework.fpp")),
         file("fprime/stubs/replay.cpp".to_owned(), &fprime_stubs::replay(plan)),
-    ];
-    files.extend(
-        parameters::source(plan).map(|source| text(format!("{directory}/{prefix}_parameters.c"), source)),
-    );
-    files
+    ]
 }
 
 /// Returns the parameters of the model, and the event of those that are refused.
@@ -152,7 +139,7 @@ fn model(plan: &Plan<'_>) -> String {
             [("Input", "Inputs", &call.inputs), ("Output", "Outputs", &call.outputs)]
         {
             let mut parameters = Vec::new();
-            if has_time(plan) {
+            if plan.has_time() {
                 parameters.push("    now_whole: I64 @< Time since the start: whole seconds\n".to_owned());
                 parameters.push("    now_part: I64 @< Femtoseconds past them\n".to_owned());
             }
@@ -190,7 +177,7 @@ fn model(plan: &Plan<'_>) -> String {
 
 /// Returns the parameter of the time, as the exported functions take it.
 fn now(plan: &Plan<'_>) -> &'static str {
-    if has_time(plan) { "const LOWER_ticks& now, " } else { "" }
+    if plan.has_time() { "const LOWER_ticks& now, " } else { "" }
 }
 
 /// Returns the declaration of the class.
@@ -211,7 +198,7 @@ fn class(plan: &Plan<'_>) -> String {
         );
         let _ = writeln!(members, "    U32 m_{name}Calls;");
     }
-    if inits_at_time(plan) {
+    if plan.inits_at_time() {
         members.push_str("    bool m_hasStarted;\n");
     }
     let mut taken = "";
@@ -224,7 +211,10 @@ fn class(plan: &Plan<'_>) -> String {
         .replace("HANDLERS", &handlers)
         .replace("PARAMETERS", taken)
         .replace("FUNCTIONS", &functions)
-        .replace("TIME    bool", if has_time(plan) { "    LOWER_ticks m_now;\n    bool" } else { "    bool" })
+        .replace(
+            "TIME    bool",
+            if plan.has_time() { "    LOWER_ticks m_now;\n    bool" } else { "    bool" },
+        )
         .replace("MEMBERS", &members)
 }
 
@@ -244,7 +234,7 @@ fn implementation(plan: &Plan<'_>) -> String {
         );
     }
     // Modes begin at the time of the first inputs.
-    let start = if inits_at_time(plan) {
+    let start = if plan.inits_at_time() {
         zeros.push_str(", m_hasStarted(false)");
         "this->m_hasStarted = false;".to_owned()
     } else {
@@ -253,7 +243,7 @@ fn implementation(plan: &Plan<'_>) -> String {
     if !plan.parameters.is_empty() {
         zeros.push_str(", m_parameters(LOWER_default_parameters)");
     }
-    let (initial, given) = if has_time(plan) { ("m_now(), ", "this->m_now, ") } else { ("", "") };
+    let (initial, given) = if plan.has_time() { ("m_now(), ", "this->m_now, ") } else { ("", "") };
     include_str!("../files/fprime/component.cpp")
         .replace("BEGIN_STATE", &start)
         .replace("PARAMETERS", &parameter_functions(plan))
@@ -274,12 +264,12 @@ fn handler(plan: &Plan<'_>, call: &CallLayout, is_law: bool) -> String {
     for channel in &call.inputs {
         copy(channel, &format!("input.{}", channel.name), &channel.name, &mut text);
     }
-    if has_time(plan) {
+    if plan.has_time() {
         text.push_str("    LOWER_ticks now;\n    now.whole = now_whole;\n    now.part = now_part;\n");
     }
-    let now = if has_time(plan) { "now, " } else { "" };
+    let now = if plan.has_time() { "now, " } else { "" };
     if is_law {
-        if has_time(plan) {
+        if plan.has_time() {
             text.push_str("    this->m_now = now;\n");
         }
         text.push_str("    this->m_input = input;\n    this->m_hasInput = true;\n}\n\n");
@@ -292,8 +282,8 @@ fn handler(plan: &Plan<'_>, call: &CallLayout, is_law: bool) -> String {
 /// Returns the function that calls a function of the control system, and sends its outputs.
 fn function(plan: &Plan<'_>, call: &CallLayout) -> String {
     let name = call.name;
-    let given = if has_time(plan) { "now, " } else { "" };
-    let start = if inits_at_time(plan) {
+    let given = if plan.has_time() { "now, " } else { "" };
+    let start = if plan.inits_at_time() {
         format!(
             "    if (!this->m_hasStarted) {{\n        LOWER_init(&this->m_state, now);{}\n        this->m_hasStarted = true;\n    }}\n",
             set_parameters(plan).replace("\n    ", "\n        ")
@@ -307,7 +297,7 @@ fn function(plan: &Plan<'_>, call: &CallLayout) -> String {
         now(plan)
     );
     let mut arguments: Vec<String> = vec!["0".to_owned()];
-    if has_time(plan) {
+    if plan.has_time() {
         arguments.extend(["now.whole".to_owned(), "now.part".to_owned()]);
     }
     for channel in &call.outputs {

@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use crate::control_system::{CallLayout, Channel, NumberKind};
 use crate::package::Plan;
-use crate::package::signature::has_time;
 
 /// Returns the type of a number in the model and in C++.
 fn scalar(kind: NumberKind) -> &'static str {
@@ -37,8 +36,11 @@ pub(super) fn arrays(plan: &Plan<'_>) -> BTreeSet<(String, usize, &'static str)>
 
 /// Returns the parameters of a handler or of an output in C++.
 pub(super) fn parameters(plan: &Plan<'_>, channels: &[Channel]) -> String {
-    let mut list =
-        if has_time(plan) { vec!["I64 now_whole".to_owned(), "I64 now_part".to_owned()] } else { Vec::new() };
+    let mut list = if plan.has_time() {
+        vec!["I64 now_whole".to_owned(), "I64 now_part".to_owned()]
+    } else {
+        Vec::new()
+    };
     list.extend(channels.iter().map(|channel| {
         let reference = if channel.count == 1 { ["", ""] } else { ["const ", "&"] };
         format!("{}{}{} {}", reference[0], type_name(channel), reference[1], channel.name)
@@ -54,6 +56,6 @@ pub(super) fn handled(plan: &Plan<'_>, call: &CallLayout) -> String {
 
 /// Returns the arguments with the time, and then these channels.
 pub(super) fn arguments(plan: &Plan<'_>, channels: &[Channel]) -> Vec<String> {
-    let time = ["now_whole", "now_part"].iter().filter(|_| has_time(plan)).map(|name| (*name).to_owned());
+    let time = ["now_whole", "now_part"].iter().filter(|_| plan.has_time()).map(|name| (*name).to_owned());
     time.chain(channels.iter().map(|channel| channel.name.clone())).collect()
 }

@@ -2,12 +2,11 @@
 
 use std::fmt::Write as _;
 
-use super::camel;
 use super::fprime_ports::{arguments, arrays, handled, parameters, type_name};
 use crate::control_system::NumberKind;
+use crate::glue::camel;
+use crate::package::FlightParameter;
 use crate::package::Plan;
-use crate::package::parameters::FlightParameter;
-use crate::package::signature::has_time;
 
 /// Returns the stub of the class that F Prime generates.
 pub(super) fn stub(plan: &Plan<'_>) -> String {
@@ -29,7 +28,7 @@ pub(super) fn stub(plan: &Plan<'_>) -> String {
         );
         let added: Vec<String> =
             call.outputs.iter().map(|channel| format!("        words.add({});\n", channel.name)).collect();
-        let times = if has_time(plan) { "        (void)now_whole;\n        (void)now_part;\n" } else { "" };
+        let times = if plan.has_time() { "        (void)now_whole;\n        (void)now_part;\n" } else { "" };
         let list = parameters(plan, &call.outputs);
         let _ = writeln!(
             outputs,

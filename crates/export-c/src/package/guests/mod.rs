@@ -55,12 +55,3 @@ fn named(template: &str, plan: &Plan<'_>) -> String {
         .replace("LOWER", plan.prefix)
         .replace("UPPER", &plan.prefix.to_uppercase())
 }
-
-/// Returns a name in lower case with a capital letter at the start of each word, and without underscores.
-fn camel(name: &str) -> String {
-    let words = name.split('_').map(|word| {
-        let (first, rest) = word.split_at(word.len().min(1));
-        first.to_uppercase() + rest
-    });
-    words.collect()
-}

@@ -2,10 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::camel;
 use crate::control_system::{CallLayout, Channel, NumberKind};
+use crate::glue::camel;
 use crate::package::Plan;
-use crate::package::signature::has_time;
 
 /// Bytes to which a payload is filled.
 const ALIGNMENT: usize = 8;
@@ -25,7 +24,7 @@ impl<'a> Payload<'a> {
     pub fn for_call(plan: &Plan<'a>, call: &'a CallLayout, is_input: bool) -> Self {
         let (side, channels) = if is_input { ("Input", &call.inputs) } else { ("Output", &call.outputs) };
         let name = format!("UPPER_APP_{}_{side}_Payload_t", camel(call.name));
-        Self { name, has_time: has_time(plan), channels }
+        Self { name, has_time: plan.has_time(), channels }
     }
 
     /// Returns the definition of the struct: numbers of 8 bytes, then truth values, then what fills it up.

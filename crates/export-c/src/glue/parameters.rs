@@ -1,4 +1,4 @@
-//! Parameters of an exported control system: numbers that are tuned in flight, with defaults, limits and a check.
+//! Parameters of a control system: numbers that are tuned in flight, with defaults, limits and a check.
 
 use std::fmt::Write as _;
 
@@ -6,8 +6,9 @@ use flexsc_core::control::operation::ModeReading;
 use flexsc_core::numerics::attitude::AXES;
 use flexsc_flight::mode_condition::{ConditionSource, ConditionStep};
 
-use super::Plan;
-use super::initialiser::initialiser;
+use super::Glue;
+use super::member::Member;
+use super::text::literal;
 use crate::control_system::{Actuation, BDotLaws, ControlSystem, LawsOfAxes, ModeSystem, SampledLaws};
 
 /// Factor by which a parameter may be larger or smaller than its default.
@@ -107,7 +108,7 @@ fn add_laws(laws: &SampledLaws, mode: Option<&str>, state: &str, all: &mut Vec<F
     let axes = laws.axis_count();
     for axis in 0..axes {
         for (member, about, value) in law_members(&laws.laws, axis) {
-            let law = super::signature::about("law", axis, axes);
+            let law = super::text::about("law", axis, axes);
             let mut about = about.to_owned();
             if axes > 1 {
                 let _ = write!(about, ", {}", AXES[axis]);
@@ -229,129 +230,91 @@ fn add_modes(modes: &ModeSystem, all: &mut Vec<FlightParameter>) {
     }
 }
 
-/// Returns the C struct `NAME_parameters` for the header; empty without parameters.
-pub fn definition(plan: &Plan<'_>) -> String {
-    let mut text = String::new();
-    if plan.parameters.is_empty() {
-        return text;
-    }
-    text.push_str("/* Numbers that are tuned in flight. */\ntypedef struct {\n");
-    for parameter in plan.parameters {
-        let _ = writeln!(text, "    /* {}. */\n    double {};", parameter.about, parameter.name);
-    }
-    let _ = writeln!(text, "}} {}_parameters;\n", plan.prefix);
-    text
-}
-
-/// Returns the declarations, for the header.
-pub fn declarations(plan: &Plan<'_>) -> String {
-    if plan.parameters.is_empty() {
-        return String::new();
-    }
-    let prefix = plan.prefix;
-    format!(
-        "/* Parameters of the scenario, which `{prefix}_init` takes. */\nextern const {prefix}_parameters {prefix}_default_parameters;\n\n\
-         /* Returns 0 if all parameters are within their limits, else the number of the first that is not, from 1; in {prefix}_parameters.c. */\n\
-         int32_t {prefix}_parameters_check(const {prefix}_parameters *parameters);\n\n\
-         /* Takes other parameters, at any time: laws and filters go on with them, also after `{prefix}_start`. Changes nothing, and returns the number of the first one beyond its limits, if there is one; else 0. In {prefix}_parameters.c. */\n\
-         int32_t {prefix}_set_parameters({prefix}_state *state, const {prefix}_parameters *parameters);\n\n"
-    )
-}
-
-/// Writes the constant with the defaults.
-pub fn defaults(plan: &Plan<'_>, text: &mut String) {
-    if plan.parameters.is_empty() {
+/// Adds the parameters, their defaults, their check and their change.
+pub fn add(glue: &mut Glue<'_>) {
+    let (all, count) = (glue.plan.parameters, glue.plan.parameters.len());
+    if count == 0 {
         return;
     }
-    let rows: Vec<String> = plan
-        .parameters
-        .iter()
-        .map(|own| format!("    .{} = {}", own.name, initialiser(&own.value, plan.prefix)))
-        .collect();
-    let prefix = plan.prefix;
-    let _ = writeln!(
-        text,
-        "const {prefix}_parameters {prefix}_default_parameters = {{\n{}\n}};\n",
-        rows.join(",\n")
-    );
-}
-
-/// Writes the statement of `init` that takes the defaults.
-pub fn init(plan: &Plan<'_>, text: &mut String) {
-    if !plan.parameters.is_empty() {
-        let _ = writeln!(text, "    state->parameters = {}_default_parameters;", plan.prefix);
+    glue.types.push_str("/// Numbers that are tuned in flight.\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct Parameters {\n");
+    let mut defaults = "Parameters {\n".to_owned();
+    for own in all {
+        let _ = writeln!(glue.types, "    /// {}.\n    pub {}: f64,", own.about, own.name);
+        let _ = writeln!(defaults, "    {}: {},", own.name, literal(&own.value));
     }
+    glue.types.push_str("}\n\n");
+    let _ = writeln!(
+        glue.constants,
+        "/// Parameters of the scenario, which `init` takes.\npub const DEFAULT_PARAMETERS: Parameters = {defaults}}};\n"
+    );
+    let about = "Numbers that are tuned in flight.";
+    glue.members.push(Member::new(about, "parameters", "Parameters", "DEFAULT_PARAMETERS".to_owned()));
+    let limits: Vec<[f64; 2]> = all.iter().map(FlightParameter::limits).collect();
+    let about = format!(
+        "Least and greatest value of each parameter: a factor of {FACTOR} from its default, which a team narrows."
+    );
+    glue.list(&about, "LIMITS", "[f64; 2]", &limits);
+    let values: String = all.iter().map(|own| format!("        parameters.{},\n", own.name)).collect();
+    let mut check = format!(
+        "    let values: [f64; {count}] = [\n{values}    ];
+    for index in 0..{count} {{
+        // a number that is not finite is in no range
+        if !(values[index] >= LIMITS[index][0] && values[index] <= LIMITS[index][1]) {{
+            return index as i32 + 1;
+        }}
+    }}
+"
+    );
+    if let Some(place) = all.iter().position(|own| own.name == "unload_below") {
+        let number = place + 1;
+        let _ = writeln!(
+            check,
+            "    if !(parameters.unload_below < parameters.unload_above) {{\n        return {number};\n    }}"
+        );
+    }
+    check.push_str("    0\n");
+    let about = "Returns 0 if all parameters are within their limits, else the number of the first that is not, from 1.";
+    let head = "pub fn parameters_check() -> i32";
+    glue.function(about, head, &["parameters: &Parameters"], &check);
+    let change = format!(
+        "    let refused: i32 = parameters_check(parameters);
+    if refused != 0 {{
+        return refused;
+    }}
+    state.parameters = *parameters;
+{}    0
+",
+        apply(glue, "")
+    );
+    let about = "Takes other parameters, at any time: laws and filters go on with them, also after `start`. Changes nothing, and returns the number of the first one beyond its limits, if there is one; else 0.";
+    let head = "pub fn set_parameters() -> i32";
+    glue.function(about, head, &["state: &mut State", "parameters: &Parameters"], &change);
 }
 
-/// Writes the statements that set the members of the state in use whose names begin with `start` to their parameters.
-pub fn apply(plan: &Plan<'_>, start: &str, text: &mut String) {
-    for own in plan.parameters {
-        if let Some(running) = own.running.as_ref().filter(|running| running.starts_with(start)) {
-            let _ = writeln!(text, "    state->{running} = state->parameters.{};", own.name);
+impl FlightParameter {
+    /// Returns the least and the greatest value.
+    fn limits(&self) -> [f64; 2] {
+        let ends = [self.value / FACTOR, self.value * FACTOR];
+        match self.value {
+            0.0 => [-1.0, 1.0],
+            value if value < 0.0 => [ends[1], ends[0]],
+            _ => ends,
         }
     }
 }
 
-/// Returns the expression of a parameter in a function with the state, or the literal of a number that is no parameter.
-pub fn expression(plan: &Plan<'_>, name: &str, value: f64) -> String {
-    if plan.parameters.iter().any(|own| own.name == name) {
-        format!("state->parameters.{name}")
-    } else {
-        initialiser(&value, plan.prefix)
-    }
+/// Returns the statements that set the members of the state in use whose names begin with `start` to their parameters.
+pub fn apply(glue: &Glue<'_>, start: &str) -> String {
+    let running = glue.plan.parameters.iter().filter_map(|own| Some((own.running.as_ref()?, &own.name)));
+    let own = running.filter(|(running, _)| running.starts_with(start));
+    own.map(|(running, name)| format!("    state.{running} = state.parameters.{name};\n")).collect()
 }
 
-/// Returns the file with the check and the change of parameters; `None` without parameters.
-pub fn source(plan: &Plan<'_>) -> Option<String> {
-    let (prefix, count) = (plan.prefix, plan.parameters.len());
-    if count == 0 {
-        return None;
+/// Returns the expression of a parameter in a function with the state, or the literal of a number that is no parameter.
+pub fn expression(glue: &Glue<'_>, name: &str, value: f64) -> String {
+    if glue.plan.parameters.iter().any(|own| own.name == name) {
+        format!("state.parameters.{name}")
+    } else {
+        literal(&value)
     }
-    let mut text = format!(
-        "/* Parameters of {prefix}.c: their limits, check and change. */\n\n#include \"{prefix}.h\"\n\n\
-         /* Least and greatest value of each parameter: a factor of {FACTOR} from its default, which a team narrows. */\n\
-         static const double limits[{count}][2] = {{\n"
-    );
-    let literal = |value: f64| initialiser(&value, prefix);
-    let rows: Vec<String> = plan
-        .parameters
-        .iter()
-        .map(|own| {
-            let ends = [own.value / FACTOR, own.value * FACTOR];
-            let (least, greatest) = match own.value {
-                0.0 => (-1.0, 1.0),
-                value if value < 0.0 => (ends[1], ends[0]),
-                _ => (ends[0], ends[1]),
-            };
-            format!("    /* {} */ {{ {}, {} }}", own.name, literal(least), literal(greatest))
-        })
-        .collect();
-    let _ = writeln!(text, "{}\n}};\n", rows.join(",\n"));
-    let _ = writeln!(
-        text,
-        "int32_t {prefix}_parameters_check(const {prefix}_parameters *parameters)\n{{\n    const double values[{count}] = {{"
-    );
-    let values: Vec<String> =
-        plan.parameters.iter().map(|own| format!("        parameters->{}", own.name)).collect();
-    let _ = writeln!(
-        text,
-        "{}\n    }};\n\n    for (int32_t index = 0; index < {count}; ++index) {{\n        /* a number that is not finite is in no range */\n        \
-         if (!(values[index] >= limits[index][0] && values[index] <= limits[index][1])) {{\n            return index + 1;\n        }}\n    }}",
-        values.join(",\n")
-    );
-    if let Some(place) = plan.parameters.iter().position(|own| own.name == "unload_below") {
-        let _ = writeln!(
-            text,
-            "    if (!(parameters->unload_below < parameters->unload_above)) {{\n        return {};\n    }}",
-            place + 1
-        );
-    }
-    let _ = writeln!(
-        text,
-        "    return 0;\n}}\n\nint32_t {prefix}_set_parameters({prefix}_state *state, const {prefix}_parameters *parameters)\n{{\n    \
-         const int32_t refused = {prefix}_parameters_check(parameters);\n    if (refused != 0) {{\n        return refused;\n    }}\n    state->parameters = *parameters;"
-    );
-    apply(plan, "", &mut text);
-    text.push_str("    return 0;\n}\n");
-    Some(text)
 }
