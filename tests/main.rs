@@ -151,6 +151,8 @@ mod flight_pages;
 #[cfg(feature = "flight-code")]
 mod flight_parameters;
 #[cfg(feature = "flight-code")]
+mod flight_rust;
+#[cfg(feature = "flight-code")]
 mod flight_single;
 mod foreign;
 #[cfg(feature = "full")]

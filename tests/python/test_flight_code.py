@@ -52,6 +52,15 @@ def test_guests_are_written_beside_the_control_system(tmp_path: Path) -> None:
         scenario.export_c(tmp_path / "other", guests=["vxworks"])  # type: ignore[list-item]
 
 
+def test_a_crate_of_rust_is_written(tmp_path: Path) -> None:
+    scenario = flexsc.Scenario.example("relay-sampled")
+    files = scenario.export_c(tmp_path / "flight", name="relay", calls=10, language="rust")
+    names = {str(file.relative_to(tmp_path / "flight")) for file in files}
+    assert {"Cargo.toml", "src/lib.rs", "src/control_system.rs", "tests/replay.rs"} <= names
+    with pytest.raises(ValueError, match="'ada' is none of c, rust"):
+        scenario.export_c(tmp_path / "other", language="ada")  # type: ignore[arg-type]
+
+
 def test_a_law_without_plain_code_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"law\.open"):
         flexsc.Scenario.example("rotation-cosine").export_c(tmp_path / "flight")

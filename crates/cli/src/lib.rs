@@ -177,7 +177,7 @@ enum Verb {
     Reproduce(reproduce::ReproduceArgs),
     /// Export a topic of a log as CSV or JSON
     Export(export::ExportArgs),
-    /// Write the control system of a scenario as C99
+    /// Write the control system of a scenario as C99 or Rust
     ///
     /// Translated from the Rust code that runs call, with a driver, vectors of a run, and a Makefile that compares them by bits: relays, PD, phase-plane and attitude laws.
     ExportC(export_c::ExportCArgs),

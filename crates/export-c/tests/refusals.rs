@@ -81,7 +81,7 @@ const CASES: &[(&str, usize, &str)] = &[
     ("fn f(a: &Law) -> f64 {\n let b = &a.gain;\n *b }", 1, "a local that is a reference"),
     ("fn f(a: &f64) -> f64 { a + 1.0 }", 0, "an operation with &f64; accepted: `*` before the reference"),
     ("fn f(a: &f64) -> f64 { a }", 0, "a value of the type &f64; accepted: the type f64, by `*`"),
-    ("fn f() -> f64 { slice(&[1.0]) }", 0, "an array; accepted"),
+    ("fn f() -> f64 { slice(&[true]) }", 0, "a value of the type bool; accepted: the type f64"),
     ("fn f(a: &[f64]) -> f64 { slice(&a[1..]) }", 0, "a range"),
     ("use core::f64::consts::PI;", 0, "an import from `core`"),
     ("use crate::other::*;", 0, "a glob"),

@@ -79,7 +79,6 @@ impl ModulePlan<'_> {
             init: String::new(),
             functions: String::new(),
         };
-        parameters::add(&mut glue);
         run_start::add(&mut glue);
         match self.system {
             ControlSystem::Relays(relays) => relays::add(&mut glue, relays),
@@ -87,6 +86,7 @@ impl ModulePlan<'_> {
             ControlSystem::BDot(system) => b_dot::add_system(&mut glue, system),
             ControlSystem::Modes(modes) => modes::add(&mut glue, modes),
         }
+        parameters::add(&mut glue);
         glue.finish()
     }
 }
@@ -190,7 +190,11 @@ impl<'a> Glue<'a> {
 
 /// Returns the imports of the types and modules that a text names.
 fn uses(code: &str, precision: Precision) -> String {
-    let named = text::words(code);
+    let is_code = |line: &&str| !line.trim_start().starts_with("//");
+    let code: String = code.lines().filter(is_code).flat_map(|line| [line, "\n"]).collect();
+    // A variant of an enum may have the name of a type.
+    let whole = code.replace("::", ":: _");
+    let named = text::words(&whole);
     let mut lines = BTreeSet::new();
     for source in sources_in(precision) {
         let module = source.module;
@@ -199,11 +203,8 @@ fn uses(code: &str, precision: Precision) -> String {
         }
         for kind in ["\npub struct ", "\npub enum "] {
             let names = source.text.split(kind).skip(1).filter_map(|rest| rest.split(' ').next());
-            lines.extend(
-                names
-                    .filter(|name| named.contains(name))
-                    .map(|name| format!("use crate::{module}::{name};\n")),
-            );
+            let own = names.filter(|name| named.contains(name));
+            lines.extend(own.map(|name| format!("use crate::{module}::{name};\n")));
         }
     }
     lines.into_iter().collect()

@@ -103,8 +103,8 @@ fn step(glue: &Glue<'_>, modes: &ModeSystem) -> String {
     }
     let arms = modes.modes.iter().enumerate().map(|(index, mode)| {
         let decision = decide(glue, modes, mode);
-        let body = block(&block(&decision));
-        if decision.is_empty() { String::new() } else { format!("        {index} => {}", body.trim_start()) }
+        let body = block(&decision).replace("\n", "\n    ");
+        if decision.is_empty() { String::new() } else { format!("        {index} => {}\n", body.trim()) }
     });
     text += &selected(&arms.collect::<String>());
     text += &actuation::wheels(glue, &modes.actuation, &VECTOR.map(|axis| format!("torque.{axis}")));

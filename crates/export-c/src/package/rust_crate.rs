@@ -7,6 +7,7 @@ use super::{ExportError, ExportOrigin, Package, PackageFile, Plan, Prepared, acc
 use crate::control_system::{CallLayout, Channel, NumberKind};
 use crate::flight_sources::sources_in;
 use crate::glue::camel;
+use crate::self_test::{BLOCK, EXTREME_BLOCK, SEED, cycle_milliseconds, extremes, self_test};
 use crate::translate::SourceFile;
 use crate::vectors;
 use flexsc_core::Scenario;
@@ -30,10 +31,6 @@ pub fn export_rust(
     let needed = needed_modules(&sources, &module.text);
     let mut files: Vec<PackageFile> =
         needed.iter().map(|own| text(format!("src/{}.rs", own.module), flight_file(own))).collect();
-    let replay = include_str!("files/rust/replay.rs");
-    let real = if plan.precision.is_double() { "f64" } else { "f32" };
-    let init = if plan.inits_at_time() { "&mut state, Ticks { whole: 0, part: 0 }" } else { "&mut state" };
-    let replay = replay.replace("NAME", name).replace("REAL", real).replace("INIT", init);
     files.extend([
         text("Cargo.toml".to_owned(), manifest(&plan)),
         text("README.md".to_owned(), static_files::readme_of_crate(&plan, prepared.vectors.len(), &accuracy)),
@@ -46,7 +43,7 @@ pub fn export_rust(
             ),
         ),
         text("src/lib.rs".to_owned(), library(&plan, &needed)),
-        text("tests/replay.rs".to_owned(), replay.replace("CALLS", &calls(&plan))),
+        text("tests/replay.rs".to_owned(), replay(&plan)),
         PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(&prepared.vectors) },
     ]);
     files.sort_by(|a, b| a.path.cmp(&b.path));
@@ -90,7 +87,7 @@ fn needed_modules<'a>(sources: &[SourceFile<'a>], text: &str) -> Vec<SourceFile<
 fn manifest(plan: &Plan<'_>) -> String {
     format!(
         "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\nrust-version = \"1.89\"\nlicense = \"MIT OR Apache-2.0\"\n\
-         description = \"Control system of {}, exported by flexsc {}\"\npublish = false\n\n[lib]\ndoctest = false\n\n\
+         description = \"Control system of {}, exported by flexsc {}\"\npublish = false\n\n[lib]\ntest = false\ndoctest = false\n\n\
          # A workspace of its own, wherever the directory is.\n[workspace]\n",
         plan.prefix,
         plan.origin.file,
@@ -112,12 +109,42 @@ fn library(plan: &Plan<'_>, needed: &[SourceFile<'_>]) -> String {
     )
 }
 
+/// Cycles of the test with random inputs: the last of its blocks has extreme ones.
+const CYCLES: u64 = BLOCK * EXTREME_BLOCK;
+
+/// Returns the test that replays the vectors, and repeats the self-test.
+fn replay(plan: &Plan<'_>) -> String {
+    let list = |items: Vec<String>| items.join(", ");
+    let time = "Ticks { whole: _time[0], part: _time[1] }";
+    let init = if plan.inits_at_time() { format!("init(state, {time})") } else { "init(state)".to_owned() };
+    let ticks = if plan.has_time() { format!("use {}::ticks::Ticks;\n", plan.prefix) } else { String::new() };
+    let extremes = extremes(plan.precision).iter().map(|word| format!("0x{word:016x}")).collect();
+    let named = [
+        ("NAME", plan.prefix.to_owned()),
+        ("REAL", if plan.precision.is_double() { "f64" } else { "f32" }.to_owned()),
+        ("TICKS", ticks),
+        ("COUNT", plan.calls.len().to_string()),
+        ("STARTS", list(plan.calls.iter().map(|call| call.is_start.to_string()).collect())),
+        ("EXTREME_WORDS", list(extremes)),
+        ("INIT", init),
+        ("CALLS", calls(plan, time)),
+        ("SEED", format!("0x{SEED:016x}")),
+        ("CYCLES_u64", format!("{CYCLES}_u64")),
+        ("MILLISECONDS", cycle_milliseconds(plan.system).to_string()),
+        ("BLOCK", BLOCK.to_string()),
+        ("EXTREME ", format!("{EXTREME_BLOCK} ")),
+        ("HASH", format!("0x{:016x}", self_test(plan.system, CYCLES))),
+    ];
+    let template = include_str!("files/rust/replay.rs").to_owned();
+    named.iter().fold(template, |text, (name, value)| text.replace(name, value))
+}
+
 /// Returns the arms of the test that call each function.
-fn calls(plan: &Plan<'_>) -> String {
+fn calls(plan: &Plan<'_>, time: &str) -> String {
     let mut text = String::new();
     for (index, layout) in plan.calls.iter().enumerate() {
         let CallLayout { name, inputs, outputs, .. } = layout;
-        let (kind, now) = (camel(name), if plan.has_time() { "_now, " } else { "" });
+        let (kind, now) = (camel(name), if plan.has_time() { format!("{time}, ") } else { String::new() });
         let mut given: Vec<String> = inputs.iter().map(input).collect();
         if given.is_empty() {
             given.push("unused: false".to_owned());
@@ -135,18 +162,15 @@ fn calls(plan: &Plan<'_>) -> String {
     text
 }
 
-/// Returns a member of the inputs that is read from the file.
+/// Returns a member of the inputs with its next value.
 fn input(channel: &Channel) -> String {
-    let read = match channel.kind {
-        NumberKind::Real => "words.real()",
-        NumberKind::Flag => "words.flag()",
-        NumberKind::Integer(_) => "words.integer()",
-    };
-    let name = &channel.name;
-    if channel.count == 1 {
-        format!("{name}: {read}")
-    } else {
-        format!("{name}: std::array::from_fn(|_| {read})")
+    let Channel { name, count, scale, is_unit, .. } = channel;
+    let plural = if *count == 1 { "" } else { "s" };
+    match channel.kind {
+        NumberKind::Real if *is_unit => format!("{name}: from.units({scale:?})"),
+        NumberKind::Real => format!("{name}: from.real{plural}({scale:?})"),
+        NumberKind::Flag => format!("{name}: from.flag{plural}()"),
+        NumberKind::Integer(below) => format!("{name}: from.integer({})", below.max(1)),
     }
 }
 

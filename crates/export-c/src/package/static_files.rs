@@ -76,7 +76,8 @@ pub fn readme_of_crate(plan: &Plan<'_>, vectors: usize, accuracy: &[OutputAccura
     text.push_str(&origin(plan, "constant `VERSION`"));
     let _ = write!(
         text,
-        "\nA state begins as `State::UNSET`, and `init` sets it. `cargo test` replays the {vectors} calls in `vectors.bin`, recorded in a run of flexsc, and compares every output by bits.\n"
+        "\nA state begins as `State::UNSET`, and `init` sets it. `cargo test` replays the {vectors} calls in `vectors.bin`, recorded in a run of flexsc, and compares every output by bits; \
+         then it calls the functions with random and extreme inputs (zeros, subnormals, infinities, NaN) and compares a hash.\n"
     );
     text + &table(accuracy, vectors)
 }

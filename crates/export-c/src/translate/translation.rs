@@ -6,7 +6,7 @@ use super::comments::comment;
 use super::constants::{declare_constant, define_constant};
 use super::error::{Outcome, TranslationError};
 use super::functions::{TranslatedFunction, translate_function};
-use super::items::{ItemContent, Program};
+use super::items::{EXPORTED_MODULE, ItemContent, Program};
 use super::names::{Names, free_name};
 use super::order::by_module;
 use super::prelude::{GUARDS, INCLUDES};
@@ -123,6 +123,8 @@ fn translate_items(
         translation.definitions += &helper.text(program.is_single);
         translation.definitions.push('\n');
     }
+    let is_own = |index: &usize| program.files[program.items[*index].file].module == EXPORTED_MODULE;
+    let mut own = Vec::new();
     for index in &parts.items {
         translation.record_names(&program, &names, *index);
         let text = match &program.items[*index].content {
@@ -132,9 +134,16 @@ fn translate_items(
             }
             _ => continue,
         };
-        translation.declarations += &text;
-        translation.declarations.push('\n');
+        if is_own(index) {
+            own.push((*index, text));
+        } else {
+            translation.declarations += &text;
+            translation.declarations.push('\n');
+        }
     }
+    // The flight code needs no types of the library: they follow in their order.
+    own.sort_unstable();
+    translation.declarations.extend(own.into_iter().map(|(_, text)| text + "\n"));
     for index in &program.exported {
         translation.prototypes += &match &functions[*index] {
             Some(function) => function.prototype.clone(),

@@ -337,6 +337,17 @@ pub fn references(a: f64, b: f64, n: u64) -> f64 {
         + sum
         + f64::from(count)
         + weigh(&filter.state, &vector) * (n & 1) as f64
+        + sum_of(&[])
+        + sum_of(&[a, 2.0 * b])
+}
+
+/// Returns the sum of numbers, of which there may be none.
+fn sum_of(values: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for index in 0..values.len() {
+        sum += values[index];
+    }
+    sum
 }
 
 /// Matrix in a struct.

@@ -1,4 +1,4 @@
-"""The control system of a scenario as C99, by the command `flexsc export-c`."""
+"""The control system of a scenario as C99 or Rust, by the command `flexsc export-c`."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 
 Guest = Literal["cfs", "fprime"]
+Language = Literal["c", "rust"]
 
 
 def export_c(
@@ -24,6 +25,7 @@ def export_c(
     name: str | None,
     calls: int,
     guests: Sequence[Guest],
+    language: Language,
     force: bool,
 ) -> list[Path]:
     """Write the control system of a scenario, and return its files."""
@@ -33,8 +35,10 @@ def export_c(
     for guest in names:
         if guest not in get_args(Guest):
             raise ValueError(f"guests: {guest!r} is none of {', '.join(get_args(Guest))}")
+    if language not in get_args(Language):
+        raise ValueError(f"language: {language!r} is none of {', '.join(get_args(Language))}")
     folder = Path(path)
-    options = ["--calls", str(calls), *(f"--guest={guest}" for guest in names)]
+    options = ["--as", language, "--calls", str(calls), *(f"--guest={guest}" for guest in names)]
     options += ["--name", name] if name is not None else []
     _command.run(scenario, "export-c", folder, options, force)
     return sorted(path for path in folder.rglob("*") if path.is_file())

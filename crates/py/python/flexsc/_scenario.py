@@ -851,6 +851,7 @@ class Scenario:
         name: str | None = None,
         calls: int = 20_000,
         guests: Sequence[Literal["cfs", "fprime"]] = (),
+        language: Literal["c", "rust"] = "c",
         force: bool = False,
     ) -> list[Path]:
         """Write the control system as C99 for a flight computer, and return its files: `flexsc export-c`.
@@ -864,6 +865,7 @@ class Scenario:
             calls: Largest number of calls of the run that are recorded as vectors.
             guests: Frameworks of flight software for which the control system is also written: as an app of
                 cFS, as a component of F Prime.
+            language: `c`, or `rust` for a crate without the standard library, whose `cargo test` compares.
             force: Whether files of other content are replaced.
 
         >>> import flexsc, tempfile
@@ -877,7 +879,7 @@ class Scenario:
         """
         from flexsc._flight_code import export_c
 
-        return export_c(self, path, name, calls, guests, force)
+        return export_c(self, path, name, calls, guests, language, force)
 
     def export_fmu(
         self,
