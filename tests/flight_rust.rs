@@ -23,9 +23,10 @@ fn exported(scenario: &str) -> Dir {
     let name = scenario.split(' ').next().expect("a name");
     let dir = Dir::with(&[name]);
     let arguments = scenario.replacen(name, &format!("{name}.toml"), 1);
-    dir.run(&format!("export-c {arguments} --as rust -o out --calls 1000"))
-        .exits(0)
-        .says(&["calls of the run as vectors", "`cargo test --manifest-path out/Cargo.toml` compares them by bits"]);
+    dir.run(&format!("export-c {arguments} --as rust -o out --calls 1000")).exits(0).says(&[
+        "calls of the run as vectors",
+        "`cargo test --manifest-path out/Cargo.toml` compares them by bits",
+    ]);
     dir
 }
 
@@ -46,7 +47,8 @@ fn crates_replay_the_calls_of_their_runs() {
         "cubesat-day --precision single --name cubesat_single",
     ] {
         let output = cargo_test(&exported(scenario), &target.path("."));
-        let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+        let said =
+            String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success() && said.contains("2 passed"), "{scenario}: {said}");
     }
 }

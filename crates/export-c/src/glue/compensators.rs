@@ -3,7 +3,7 @@
 use flexsc_core::control::law::Compensator;
 
 use super::Glue;
-use super::laws::LawScope;
+use super::law_scope::LawScope;
 use super::member::Member;
 use super::text::{about, block, literal, local, vector};
 

@@ -61,8 +61,9 @@ fn add_start(glue: &mut Glue<'_>, unit: &KalmanUnit) {
     }
     let about_start = "Starts the filters with the mean of their states.";
     glue.function(about_start, "fn start_filters()", &["state: &mut State", "mean: &[f64]"], &body);
-    let start = format!("    let mean: [f64; {first}] = [0.0; {first}];\n    start_filters(state, &mean);\n");
-    glue.init.push_str(&start);
+    let about_mean = "Mean of the states before the start: zeros.";
+    glue.constant(about_mean, "NO_MEAN", &format!("[f64; {first}]"), &format!("[0.0; {first}]"));
+    glue.init.push_str("    start_filters(state, &NO_MEAN);\n");
     let angle = |axis| format!("    output.{} = state.mean_{axis}[0];\n", about("angle", axis, axes));
     let angles: String = (0..axes).map(angle).collect();
     glue.call("start", &("    start_filters(state, &input.mean);\n".to_owned() + &angles));

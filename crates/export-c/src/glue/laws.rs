@@ -2,50 +2,13 @@
 
 use flexsc_core::numerics::attitude::AXES;
 
+use super::law_scope::LawScope;
 use super::member::{self, Member};
 use super::text::{VECTOR, about, block, literal, local, vector};
 use super::{Glue, compensators, momentum, parameters};
-use crate::control_system::{LawsOfAxes, SampledLaws};
-
-/// Laws of a control system, or of one of its modes.
-pub struct LawScope<'a> {
-    pub laws: &'a SampledLaws,
-    /// Name of the mode; `None` of laws that act throughout.
-    pub mode: Option<&'a str>,
-    /// True if the variables `angle` and `rate` are the estimates of an attitude filter.
-    pub has_attitude: bool,
-}
+use crate::control_system::LawsOfAxes;
 
 impl LawScope<'_> {
-    /// Returns the path of the struct with the state of the laws.
-    fn path(&self) -> String {
-        self.mode.map_or_else(|| "state".to_owned(), |mode| format!("state.law_{mode}"))
-    }
-
-    /// Returns a member of the state that is the laws' own.
-    pub fn state(&self, member: &str) -> String {
-        format!("{}.{member}", self.path())
-    }
-
-    /// Returns the name of a constant that is the laws' own.
-    pub fn constant(&self, name: &str) -> String {
-        self.mode.map_or_else(|| name.to_owned(), |mode| format!("{name}_{mode}")).to_uppercase()
-    }
-
-    /// Returns the estimated angle or rate about an axis: a component of the filter's estimate, or an input.
-    pub fn estimate(&self, name: &str, axis: usize) -> String {
-        let own = |name: &str| about(name, axis, self.laws.axis_count());
-        if self.has_attitude {
-            format!("{name}.{}", VECTOR[axis])
-        } else if self.laws.filter.is_some() {
-            format!("state.{}.{name}", own("estimate"))
-        } else if self.laws.rate_filter.is_some() && name == "rate" {
-            format!("state.{}.rate", own("rate_filter"))
-        } else {
-            format!("input.{}", own(name))
-        }
-    }
-
     /// Returns the members of the state.
     pub fn members(&self) -> Vec<Member> {
         fn law(kind: &str, laws: &[impl std::fmt::Debug]) -> Member {
@@ -131,7 +94,7 @@ impl LawScope<'_> {
         let (laws, axes) = (self.laws, self.laws.axis_count());
         let input = |name: &str| format!("input.{}", about(name, axis, axes));
         let given = |is_read: bool, name: &str| if is_read { input(name) } else { "0.0".to_owned() };
-        let total = if axes == 3 { "total_angle" } else { "0.0" };
+        let total = if axes == 3 { "total_angle" } else { "total_angle: 0.0" };
         // A mode is an input, or an estimate of the filter.
         let mode = |name: &str| match &laws.filter {
             _ if !laws.reads_mode() => "0.0".to_owned(),
@@ -140,7 +103,7 @@ impl LawScope<'_> {
             None => input(name),
         };
         let motion = format!(
-            "AxisMotion {{ angle: {}, total_angle: {total}, rate: {}, queued_rate: {}, displacement: {}, displacement_rate: {}, frequency: {} }}",
+            "AxisMotion {{ angle: {}, {total}, rate: {}, queued_rate: {}, displacement: {}, displacement_rate: {}, frequency: {} }}",
             self.estimate("angle", axis),
             self.estimate("rate", axis),
             given(laws.commands_changes(), "queued_rate"),

@@ -9,6 +9,7 @@ mod b_dot;
 mod channels;
 mod compensators;
 mod kalman;
+mod law_scope;
 mod laws;
 mod member;
 mod modes;
@@ -128,8 +129,8 @@ impl<'a> Glue<'a> {
         });
         let parameters = parameters.collect::<Vec<_>>().join(", ");
         let lines = about.lines().fold(String::new(), |all, line| all + "/// " + line + "\n");
-        let _ = writeln!(self.functions, "{lines}{}", head.replacen("()", &format!("({parameters})"), 1));
-        let _ = writeln!(self.functions, "{{\n{body}}}\n");
+        let head = head.replacen("()", &format!("({parameters})"), 1);
+        let _ = writeln!(self.functions, "{lines}{head} {{\n{body}}}\n");
     }
 
     /// Adds a function of the library with this name.
@@ -179,6 +180,7 @@ impl<'a> Glue<'a> {
         let code = self.constants + &types + self.functions.trim_end() + "\n";
         let state = member::value(&self.members, "Self");
         let uses = uses(&format!("{code}{state}"), self.plan.precision);
+        let code: String = code.lines().map(text::laid_out).collect();
         let text = format!("//! Control system: the functions that call its units.\n\n{uses}\n{code}");
         if self.plan.precision.is_double() {
             ControlModule { text, state }
@@ -195,17 +197,22 @@ fn uses(code: &str, precision: Precision) -> String {
     // A variant of an enum may have the name of a type.
     let whole = code.replace("::", ":: _");
     let named = text::words(&whole);
-    let mut lines = BTreeSet::new();
+    let mut lines = String::new();
     for source in sources_in(precision) {
         let module = source.module;
         if named.contains(module) && code.contains(&format!("{module}::")) {
-            lines.insert(format!("use crate::{module};\n"));
+            let _ = writeln!(lines, "use crate::{module};");
         }
-        for kind in ["\npub struct ", "\npub enum "] {
-            let names = source.text.split(kind).skip(1).filter_map(|rest| rest.split(' ').next());
-            let own = names.filter(|name| named.contains(name));
-            lines.extend(own.map(|name| format!("use crate::{module}::{name};\n")));
-        }
+        let kinds = ["\npub struct ", "\npub enum "];
+        let names = kinds.into_iter().flat_map(|kind| source.text.split(kind).skip(1));
+        let names = names.filter_map(|rest| rest.split(' ').next());
+        let own: BTreeSet<&str> = names.filter(|name| named.contains(name)).collect();
+        let list = own.into_iter().collect::<Vec<_>>().join(", ");
+        let _ = match list.contains(',') {
+            _ if list.is_empty() => Ok(()),
+            true => writeln!(lines, "use crate::{module}::{{{list}}};"),
+            false => writeln!(lines, "use crate::{module}::{list};"),
+        };
     }
-    lines.into_iter().collect()
+    lines
 }

@@ -1,6 +1,6 @@
 //! Control system with modes of operation: a supervisor, and the laws of each mode.
 
-use super::laws::LawScope;
+use super::law_scope::LawScope;
 use super::member::{self, Member};
 use super::text::{VECTOR, block, camel, local, spread, vector_from};
 use super::{Glue, actuation, attitude, b_dot, momentum, supervisor};

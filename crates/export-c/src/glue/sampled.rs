@@ -1,6 +1,6 @@
 //! Laws that decide at their period, with their estimators and actuators.
 
-use super::laws::LawScope;
+use super::law_scope::LawScope;
 use super::text::{local, words};
 use super::{Glue, actuation, attitude, kalman, momentum, rate};
 use crate::control_system::SampledLaws;

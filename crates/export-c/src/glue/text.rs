@@ -62,6 +62,47 @@ pub fn block(statements: &str) -> String {
     format!("    {{\n{lines}    }}\n")
 }
 
+/// Greatest length of a line.
+const WIDTH: usize = 110;
+
+/// Returns a line of code, whose outermost list is on several lines if it is long.
+pub fn laid_out(line: &str) -> String {
+    let parts = if line.chars().count() > WIDTH && !line.trim_start().starts_with("//") {
+        list_of(line)
+    } else {
+        None
+    };
+    let Some((head, entries, tail)) = parts else { return format!("{line}\n") };
+    let indent = " ".repeat(line.len() - line.trim_start().len());
+    let entries: String =
+        entries.iter().map(|entry| laid_out(&format!("{indent}    {},", entry.trim()))).collect();
+    format!("{}\n{entries}{indent}{}\n", head.trim_end(), tail.trim_start())
+}
+
+/// Returns what stands before the first list with several entries, these entries, and the rest.
+fn list_of(line: &str) -> Option<(&str, Vec<&str>, &str)> {
+    let (mut opened, mut commas) = (Vec::new(), Vec::new());
+    for (place, letter) in line.char_indices() {
+        match letter {
+            '(' | '[' | '{' => opened.push(place),
+            ',' => commas.push((opened.len(), place)),
+            ')' | ']' | '}' => {
+                let start = opened.pop()?;
+                let own = commas.iter().filter(|(depth, comma)| *depth == opened.len() + 1 && *comma > start);
+                let ends: Vec<usize> = own.map(|(_, comma)| *comma).chain([place]).collect();
+                if opened.is_empty() && ends.len() > 1 {
+                    let starts = [start].into_iter().chain(ends.iter().copied());
+                    let entries = starts.zip(&ends).map(|(from, to)| &line[from + 1..*to]);
+                    let entries = entries.filter(|entry| !entry.trim().is_empty());
+                    return Some((&line[..=start], entries.collect(), &line[place..]));
+                }
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
 /// Returns a value of the flight code, from its debug text, in which every number is exact.
 pub fn literal(value: &impl Debug) -> String {
     let text = format!("{value:?}");

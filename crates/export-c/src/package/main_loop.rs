@@ -38,8 +38,7 @@ pub fn main_loop(plan: &Plan<'_>) -> String {
             call.inputs
                 .iter()
                 .filter(|channel| channel.is_unit && channel.count == 4 && call.is_start)
-                .fold(String::new(), |all, channel| all
-                    + &format!("\n    input->{}[0] = 1.0;", channel.name))
+                .fold(String::new(), |all, channel| all + &format!("\n    input->{}[0] = 1;", channel.name))
         );
         let _ = writeln!(
             text,

@@ -19,7 +19,7 @@ use crate::control_system::{CallLayout, ControlSystem, ExcludedPart};
 use crate::flight_sources::sources_in;
 use crate::glue::{self, ModulePlan};
 use crate::self_test::self_tests;
-use crate::translate::{SourceFile, Translation, TranslationError, in_single, translate_library};
+use crate::translate::{SourceFile, Translation, TranslationError, translate_library};
 use crate::vectors::{self, CallVector, VectorError};
 
 pub use crate::glue::FlightParameter;
@@ -113,11 +113,6 @@ impl Plan<'_> {
     /// Returns the name of the numbers in which the code computes.
     fn numbers(&self) -> &'static str {
         if self.precision.is_double() { "doubles" } else { "floats" }
-    }
-
-    /// Returns C with the type of the numbers in which the code computes.
-    fn in_precision(&self, text: String) -> String {
-        if self.precision.is_double() { text } else { in_single(&text) }
     }
 }
 
@@ -223,7 +218,7 @@ pub fn export(
         text(format!("{prefix}.c"), source),
         text("driver.c".to_owned(), driver::driver(&plan, &translation.guards)),
         text(format!("{prefix}.icd.json"), interface::interface(&plan, scenario)),
-        text("main_loop.c".to_owned(), plan.in_precision(main_loop::main_loop(&plan))),
+        text("main_loop.c".to_owned(), main_loop::main_loop(&plan)),
         text("Makefile".to_owned(), static_files::makefile(prefix, &hashes)),
         text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len(), &accuracy)),
         PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(vectors) },

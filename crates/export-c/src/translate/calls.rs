@@ -249,14 +249,16 @@ impl FunctionBody<'_> {
 
     /// Returns a list that is written as an argument; C has no array without elements.
     fn list_argument(&mut self, array: &ExprArray, element: &ValueKind) -> Outcome<String> {
+        let kind = self.names.plain_type(element);
         if array.elems.is_empty() {
-            return Ok("NULL, 0".to_owned());
+            let is_number = *element == ValueKind::F64;
+            return Ok(if is_number { format!("({kind}[1]){{0}}, 0") } else { "NULL, 0".to_owned() });
         }
         let mut entries = Vec::new();
         for entry in &array.elems {
             entries.push(self.expression(entry, Some(element))?.text);
         }
-        let (kind, count) = (self.names.plain_type(element), entries.len());
+        let count = entries.len();
         Ok(format!("({kind}[{count}]){{{}}}, {count}", entries.join(", ")))
     }
 

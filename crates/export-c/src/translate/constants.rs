@@ -4,7 +4,7 @@ use super::comments::comment;
 use super::error::{Outcome, refuse};
 use super::evaluation::ConstantValue;
 use super::items::{ItemContent, Program};
-use super::literals::{float_literal, integer_literal};
+use super::literals::{integer_literal, real_literal};
 use super::names::{Names, free_name};
 use super::types::ValueKind;
 use super::writer::push;
@@ -100,7 +100,7 @@ fn initialiser(
 
 fn scalar(program: &Program<'_>, names: &Names, value: &ConstantValue) -> Option<String> {
     match value {
-        ConstantValue::Float(value) => value.is_finite().then(|| float_literal(*value)),
+        ConstantValue::Float(value) => value.is_finite().then(|| real_literal(*value, program.is_single)),
         ConstantValue::Bool(value) => Some(value.to_string()),
         ConstantValue::Integer(value, kind) => {
             let digits = (*value > 0xffff && !kind.is_signed()).then(|| format!("{value:x}"));

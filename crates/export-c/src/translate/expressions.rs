@@ -9,7 +9,7 @@ use super::evaluation::{ConstantValue, is_open, outside_constant};
 use super::functions::FunctionBody;
 use super::helpers::CHelper;
 use super::items::ItemContent;
-use super::literals::{float_literal, hexadecimal_digits, integer_literal};
+use super::literals::{hexadecimal_digits, integer_literal, real_literal};
 use super::operators::{POSTFIX, UNARY};
 use super::paths::{show, words};
 use super::refusals::describe;
@@ -57,7 +57,7 @@ impl FunctionBody<'_> {
         expected: Option<&ValueKind>,
     ) -> Outcome<CExpression> {
         let value = match bare(written) {
-            Expr::Lit(literal) => literal_expression(literal, expected, false),
+            Expr::Lit(literal) => literal_expression(literal, expected, false, self.program.is_single),
             Expr::Path(path) => self.name(path),
             Expr::Field(field) => {
                 let base = self.base(&field.base)?;
@@ -176,7 +176,8 @@ impl FunctionBody<'_> {
                 Ok(CExpression::value(integer_literal(value, kind, None), POSTFIX, ValueKind::Integer(kind)))
             }
             Some(ConstantValue::Float(value)) if value.is_finite() => {
-                Ok(CExpression::value(float_literal(value), POSTFIX, ValueKind::F64))
+                let text = real_literal(value, self.program.is_single);
+                Ok(CExpression::value(text, POSTFIX, ValueKind::F64))
             }
             Some(ConstantValue::Float(value)) => {
                 let bits = if self.program.is_single {
@@ -195,7 +196,7 @@ impl FunctionBody<'_> {
 
     fn unary(&mut self, unary: &ExprUnary, expected: Option<&ValueKind>) -> Outcome<CExpression> {
         if let (UnOp::Neg(_), Expr::Lit(literal)) = (&unary.op, bare(&unary.expr)) {
-            return literal_expression(literal, expected, true);
+            return literal_expression(literal, expected, true, self.program.is_single);
         }
         match unary.op {
             UnOp::Deref(_) => {
@@ -280,7 +281,8 @@ impl FunctionBody<'_> {
         if !self.needs.helpers.contains(&helper) {
             self.needs.helpers.push(helper);
         }
-        CExpression::value(format!("{}({})", helper.name(), arguments.join(", ")), POSTFIX, kind)
+        let name = helper.name(self.program.is_single);
+        CExpression::value(format!("{name}({})", arguments.join(", ")), POSTFIX, kind)
     }
 
     /// Translates `matches!(x, A | B)`.
@@ -320,6 +322,7 @@ fn literal_expression(
     literal: &ExprLit,
     expected: Option<&ValueKind>,
     is_negative: bool,
+    is_single: bool,
 ) -> Outcome<CExpression> {
     let level = if is_negative { UNARY } else { POSTFIX };
     match &literal.lit {
@@ -331,7 +334,8 @@ fn literal_expression(
                 return refuse(literal.span(), "this number", "numbers of the type f64");
             };
             let sign = if is_negative { "-" } else { "" };
-            Ok(CExpression::value(format!("{sign}{}", float_literal(value)), level, ValueKind::F64))
+            let text = format!("{sign}{}", real_literal(value, is_single));
+            Ok(CExpression::value(text, level, ValueKind::F64))
         }
         Lit::Int(digits) => {
             let kind = match (IntegerKind::from_name(digits.suffix()), expected) {

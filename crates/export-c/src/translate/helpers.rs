@@ -31,8 +31,8 @@ pub(super) enum CHelper {
 
 impl CHelper {
     /// Returns the name in C.
-    pub(super) fn name(self) -> &'static str {
-        self.definition().0
+    pub(super) fn name(self, is_single: bool) -> String {
+        in_precision(self.definition().0, is_single)
     }
 
     /// Returns the helpers that it calls.
@@ -44,15 +44,9 @@ impl CHelper {
         }
     }
 
-    /// Returns the text of the definition, over the bits of a float if `is_single`.
+    /// Returns the text of the definition.
     pub(super) fn text(self, is_single: bool) -> String {
-        let text = self.definition().1.to_owned();
-        match self {
-            Self::ToBits | Self::FromBits | Self::Abs | Self::Copysign | Self::IsFinite if is_single => {
-                SINGLE_BITS.iter().fold(text, |text, (double, single)| text.replace(double, single))
-            }
-            _ => text,
-        }
+        in_precision(self.definition().1, is_single)
     }
 
     fn definition(self) -> (&'static str, &'static str) {
@@ -85,12 +79,31 @@ impl CHelper {
     }
 }
 
-/// Types and masks of the bits of a double, with those of a float.
-const SINGLE_BITS: [(&str, &str); 4] = [
-    ("uint64_t", "uint32_t"),
+/// Returns the text of a helper in a precision.
+fn in_precision(text: &str, is_single: bool) -> String {
+    // Only functions of doubles have their bits and literals.
+    if !is_single || !text.contains("f64_") {
+        return text.to_owned();
+    }
+    OF_FLOATS.iter().fold(text.to_owned(), |text, (double, single)| text.replace(double, single))
+}
+
+/// Types, masks and literals of doubles, with those of floats.
+const OF_FLOATS: [(&str, &str); 14] = [
+    ("f64_", "f32_"),
+    ("double", "float"),
+    ("uint64_t bits", "uint32_t bits"),
+    ("uint64_t mask", "uint32_t mask"),
+    ("static uint64_t f32_to_bits", "static uint32_t f32_to_bits"),
     ("UINT64_C(0x7fffffffffffffff)", "UINT32_C(0x7fffffff)"),
     ("UINT64_C(0x8000000000000000)", "UINT32_C(0x80000000)"),
     ("UINT64_C(0x7ff0000000000000)", "UINT32_C(0x7f800000)"),
+    ("2147483648.0", "2147483648.0f"),
+    ("2147483649.0", "2147483648.0f"),
+    ("4294967296.0", "4294967296.0f"),
+    (" 0.0", " 0.0f"),
+    ("0x1p+63", "0x1p+63f"),
+    ("0x1p+64", "0x1p+64f"),
 ];
 
 const TO_BITS: &str = "\
@@ -158,10 +171,10 @@ static uint32_t f64_to_u32(double x) {
 const TO_I64: &str = "\
 /* Returns the integer part of x, limited to the type; 0 for NaN. */
 static int64_t f64_to_i64(double x) {
-    if (x >= 0x1p63) {
+    if (x >= 0x1p+63) {
         return INT64_MAX;
     }
-    if (x > -0x1p63) {
+    if (x > -0x1p+63) {
         return (int64_t)x;
     }
     return x < 0.0 ? INT64_MIN : 0;
@@ -170,7 +183,7 @@ static int64_t f64_to_i64(double x) {
 const TO_U64: &str = "\
 /* Returns the integer part of x, limited to the type; 0 for NaN. */
 static uint64_t f64_to_u64(double x) {
-    if (x >= 0x1p64) {
+    if (x >= 0x1p+64) {
         return UINT64_MAX;
     }
     return x > 0.0 ? (uint64_t)x : UINT64_C(0);

@@ -12,6 +12,20 @@ pub fn float_literal(value: f64) -> String {
     format!("{} /* {decimal} */", hexadecimal(value))
 }
 
+/// Returns a finite number as a literal of C in a precision: the literal of a float is rounded as the Rust twin of the code rounds the
+/// double.
+pub(super) fn real_literal(value: f64, is_single: bool) -> String {
+    if !is_single {
+        return float_literal(value);
+    }
+    let rounded = value as f32;
+    let text = float_literal(f64::from(rounded));
+    match text.split_once(" /*") {
+        Some((hexadecimal, _)) => format!("{hexadecimal}f /* {rounded:?} */"),
+        None => format!("{text}f"),
+    }
+}
+
 /// True if the decimal digits of a number give it without rounding: a multiple of 1/1024 below a million.
 fn is_short_and_exact(value: f64) -> bool {
     let scaled = value * 1024.0;

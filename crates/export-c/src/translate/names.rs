@@ -8,13 +8,15 @@ use super::items::{ItemContent, Program};
 /// Names in C of all items.
 pub(super) struct Names {
     prefix: String,
+    /// True of names in single precision.
+    pub is_single: bool,
     items: Vec<String>,
 }
 
 impl Names {
     /// Names all items; two items must not share a name.
     pub(super) fn new(program: &Program<'_>, prefix: &str) -> Outcome<Self> {
-        let mut names = Self { prefix: prefix.to_owned(), items: Vec::new() };
+        let mut names = Self { prefix: prefix.to_owned(), is_single: program.is_single, items: Vec::new() };
         let mut used: HashMap<String, String> = HashMap::new();
         for (index, item) in program.items.iter().enumerate() {
             let parent = match item.owner {

@@ -10,7 +10,7 @@ pub(super) const INCLUDES: &str = "\
 ";
 
 /// Guards; `PREFIX` stands for the prefix of names.
-pub(super) const GUARDS: &str = r#"/* The results have the same bits everywhere if doubles follow IEEE 754, each operation is rounded once and to a
+const GUARDS: &str = r#"/* The results have the same bits everywhere if doubles follow IEEE 754, each operation is rounded once and to a
  * double, and none is moved, joined or left out. */
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error "PREFIX: -ffast-math, -Ofast and -ffinite-math-only change results: build without them"
@@ -39,3 +39,24 @@ typedef char PREFIX_double_has_8_bytes[sizeof(double) == 8 ? 1 : -1];
 typedef char PREFIX_constant_has_8_bytes[sizeof(1.0) == 8 ? 1 : -1];
 typedef char PREFIX_int_has_4_bytes[sizeof(int) >= 4 ? 1 : -1];
 "#;
+
+/// Parts of the guards about doubles, with those about floats.
+const OF_FLOATS: [(&str, &str); 8] = [
+    ("doubles are not evaluated", "floats are not evaluated"),
+    ("if doubles follow", "if floats follow"),
+    (" * double, and none", " * float, and none"),
+    ("DBL_MANT_DIG != 53", "FLT_MANT_DIG != 24"),
+    ("DBL_MAX_EXP != 1024 || DBL_MIN_EXP != -1021", "FLT_MAX_EXP != 128 || FLT_MIN_EXP != -125"),
+    ("double is not the 64-bit number", "float is not the 32-bit number"),
+    ("(FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 1)", "FLT_EVAL_METHOD != 0"),
+    ("double_has_8_bytes[sizeof(double) == 8", "float_has_4_bytes[sizeof(float) == 4"),
+];
+
+/// Returns the guards; `PREFIX` stands for the prefix of names. In single precision constants may be floats.
+pub(super) fn guards(is_single: bool) -> String {
+    if !is_single {
+        return GUARDS.to_owned();
+    }
+    let kept: Vec<&str> = GUARDS.lines().filter(|line| !line.contains("constant")).collect();
+    OF_FLOATS.iter().fold(kept.join("\n") + "\n", |text, (double, single)| text.replace(double, single))
+}

@@ -9,7 +9,7 @@ use super::functions::{TranslatedFunction, translate_function};
 use super::items::{EXPORTED_MODULE, ItemContent, Program};
 use super::names::{Names, free_name};
 use super::order::by_module;
-use super::prelude::{GUARDS, INCLUDES};
+use super::prelude::{INCLUDES, guards};
 use super::pruning::ConstantChoices;
 use super::reach::{reach, refuse_recursion};
 use super::writer::push;
@@ -38,38 +38,13 @@ pub struct Translation {
     pub prototypes: String,
     /// Helpers, constants and functions for the .c file, in order.
     pub definitions: String,
-    is_single: bool,
-    names: BTreeMap<String, String>,
+    functions: BTreeMap<String, String>,
 }
 
 impl Translation {
-    /// Returns the name in C of a reachable struct or enum `module::Type`.
-    pub fn type_name(&self, path: &str) -> Option<&str> {
-        self.name("type", path)
-    }
-
     /// Returns the name in C of a reachable function `module::name` or `module::Type::name`.
     pub fn function_name(&self, path: &str) -> Option<&str> {
-        self.name("function", path)
-    }
-
-    /// Returns the name in C of a reachable constant `module::NAME` or `module::Type::NAME`.
-    pub fn constant_name(&self, path: &str) -> Option<&str> {
-        self.name("constant", path)
-    }
-
-    /// Returns the name in C of a variant `module::Enum::Variant` of a reachable enum.
-    pub fn variant_name(&self, path: &str) -> Option<&str> {
-        self.name("variant", path)
-    }
-
-    /// Returns the name in C of a field `module::Type::field` of a reachable struct.
-    pub fn field_name(&self, path: &str) -> Option<&str> {
-        self.name("field", path)
-    }
-
-    fn name(&self, group: &str, path: &str) -> Option<&str> {
-        self.names.get(&format!("{group} {path}")).map(String::as_str)
+        self.functions.get(path).map(String::as_str)
     }
 }
 
@@ -114,9 +89,8 @@ fn translate_items(
     refuse_recursion(&program, &functions)?;
     let parts = reach(&program, &functions, &roots(&program)?)?;
     let mut translation = Translation {
-        is_single: program.is_single,
         includes: INCLUDES.to_owned(),
-        guards: GUARDS.replace("PREFIX", names.prefix()),
+        guards: guards(program.is_single).replace("PREFIX", names.prefix()),
         ..Translation::default()
     };
     for helper in &parts.helpers {
@@ -126,7 +100,6 @@ fn translate_items(
     let is_own = |index: &usize| program.files[program.items[*index].file].module == EXPORTED_MODULE;
     let mut own = Vec::new();
     for index in &parts.items {
-        translation.record_names(&program, &names, *index);
         let text = match &program.items[*index].content {
             ItemContent::Struct { .. } | ItemContent::Enum { .. } => declare_type(&program, &names, *index)?,
             ItemContent::Constant { .. } if program.is_size(*index)? => {
@@ -161,12 +134,15 @@ fn translate_items(
             module = file;
         }
         translation.definitions += &match &functions[index] {
-            Some(function) => function.text.clone(),
+            Some(function) => {
+                translation.functions.insert(program.path(index), names.item(index).to_owned());
+                function.text.clone()
+            }
             None => define_constant(&program, &names, index)?,
         };
         translation.definitions.push('\n');
     }
-    Ok(if translation.is_single { translation.in_single() } else { translation })
+    Ok(translation)
 }
 
 fn translate_functions(program: &Program<'_>, names: &Names) -> Outcome<Vec<Option<TranslatedFunction>>> {
@@ -185,40 +161,6 @@ fn translate_functions(program: &Program<'_>, names: &Names) -> Outcome<Vec<Opti
         functions.push(function.map_err(|error| program.placed(error, item.file))?);
     }
     Ok(functions)
-}
-
-impl Translation {
-    /// Returns the translation with floats for doubles.
-    fn in_single(mut self) -> Self {
-        for text in [&mut self.declarations, &mut self.prototypes, &mut self.definitions] {
-            *text = super::single::in_single(text);
-        }
-        self.guards = super::single::guards(&self.guards);
-        self
-    }
-
-    fn record_names(&mut self, program: &Program<'_>, names: &Names, index: usize) {
-        let path = program.path(index);
-        let mut record = |group: &str, path: &str, name: &str| {
-            self.names.insert(format!("{group} {path}"), name.to_owned());
-        };
-        match &program.items[index].content {
-            ItemContent::Struct { fields } => {
-                record("type", &path, names.item(index));
-                for field in fields {
-                    record("field", &format!("{path}::{}", field.name), &free_name(&field.name));
-                }
-            }
-            ItemContent::Enum { variants } => {
-                record("type", &path, names.item(index));
-                for (variant, _) in variants {
-                    record("variant", &format!("{path}::{variant}"), &names.variant(index, variant));
-                }
-            }
-            ItemContent::Function { .. } => record("function", &path, names.item(index)),
-            ItemContent::Constant { .. } => record("constant", &path, names.item(index)),
-        }
-    }
 }
 
 /// Returns the comment of a module, with its notices of copyright where it comes first.

@@ -326,7 +326,7 @@ impl Names {
     /// Returns the C name of a type without arrays and references.
     pub(super) fn plain_type(&self, kind: &ValueKind) -> String {
         match kind {
-            ValueKind::F64 => "double".to_owned(),
+            ValueKind::F64 => if self.is_single { "float" } else { "double" }.to_owned(),
             ValueKind::Bool => "bool".to_owned(),
             ValueKind::Integer(integer) => integer.c_name().to_owned(),
             ValueKind::Struct(index) | ValueKind::Enum(index) => self.item(*index).to_owned(),
