@@ -85,6 +85,7 @@ fn guests_and_other_languages_are_refused() {
     let dir = Dir::with(&["relay-sampled"]);
     let run = |options: &str| dir.run(&format!("export-c relay-sampled.toml -o out {options}")).exits(2);
     run("--as rust --guest cfs").says(&["--guest: must be left out with `--as rust`"]);
+    run("--as rust --name match").says(&["--name match: is a word of Rust or Cargo"]);
     run("--as ada").says(&["invalid value 'ada' for '--as <LANGUAGE>'"]);
     assert!(!dir.path("out").exists());
 }

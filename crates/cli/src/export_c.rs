@@ -15,6 +15,10 @@ use crate::{files, out, scenario};
 const MOST_CALLS: u64 = 10_000_000;
 /// Longest prefix of names in C.
 const LONGEST_NAME: usize = 32;
+/// Words that Cargo refuses as the name of a crate: those of Rust, of its libraries, and of directories that builds write.
+const WORDS_OF_RUST: &str = "abstract alloc as async await become box break build const continue core crate deps do dyn else enum examples \
+    extern false final fn for gen if impl in incremental let loop macro match mod move mut override priv proc_macro pub ref return self \
+    static std struct super test trait true try type typeof unsafe unsized use virtual where while yield";
 
 #[derive(clap::Args)]
 pub struct ExportCArgs {
@@ -140,6 +144,10 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         return Err(refused(&args.scenario, ExportError::Vectors(VectorError::NotExportable(fault))));
     }
     let is_rust = args.language == LanguageName::Rust;
+    if is_rust && WORDS_OF_RUST.split_whitespace().any(|word| word == prefix) {
+        let reason = "is a word of Rust or Cargo, which no crate has as its name: give another";
+        return Err(CliError::Arguments(format!("--name {prefix}: {reason}")));
+    }
     if is_rust && !guests.is_empty() {
         return Err(CliError::Arguments(
             "--guest: must be left out with `--as rust`: guests are in C".to_owned(),

@@ -94,10 +94,11 @@ pub fn add_unload(
                 format!("state.counter = state.unloading.begin_magnetic(&stored, &field, &UNLOADING_LIMITS, &mut {moment});\n")
             };
             let moment = if held.is_some() { "state.moment" } else { "moment" };
-            body += &match held {
+            let begun = match held {
                 Some(held) => format!("    if !({held}) {{\n        {}    }}\n", begin(moment)),
                 None => format!("    let mut moment: Vector3 = Vector3::ZERO;\n    {}", begin(moment)),
             };
+            body += &begun;
             body += &spread("output.moment", moment, &VECTOR);
         }
         UnloadingDevice::Jets(..) => body.push_str(

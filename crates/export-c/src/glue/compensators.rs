@@ -1,5 +1,7 @@
 //! Compensators: their matrices, state and calls.
 
+use std::fmt::Write as _;
+
 use flexsc_core::control::law::Compensator;
 
 use super::Glue;
@@ -37,7 +39,7 @@ fn advance(own: &LawScope<'_>, index: usize, law: &Compensator) -> String {
     let mut text = local("CompensatorRange", "range", &literal(&law.range));
     let mut lists = "&mut [], &mut []".to_owned();
     if order > 0 {
-        text += &format!("    let mut next: [f64; {order}] = [0.0; {order}];\n");
+        let _ = writeln!(text, "    let mut next: [f64; {order}] = [0.0; {order}];");
         lists = format!("&mut {}, &mut next", own.state(&format!("compensator_{index}")));
     }
     let (matrices, command) =
@@ -80,7 +82,8 @@ pub fn step_together(glue: &Glue<'_>, own: &LawScope<'_>, law: &Compensator) -> 
     };
     let (inputs, sources) = (law.inputs.len(), own.constant("sources"));
     let mut text = error("angle") + &error("rate");
-    text += &format!(
+    let _ = write!(
+        text,
         "    let mut inputs: [f64; {inputs}] = [0.0; {inputs}];
     compensator::read_sources(&{sources}, &angle_error, &rate_error, {speeds}, &mut inputs);
 "

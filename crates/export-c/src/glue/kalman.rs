@@ -1,5 +1,7 @@
 //! Kalman filters: their start, a sample of the sensors, and a change of the target.
 
+use std::fmt::Write as _;
+
 use super::Glue;
 use super::member::Member;
 use super::text::{about, block, literal};
@@ -31,10 +33,10 @@ pub fn add(glue: &mut Glue<'_>, unit: &KalmanUnit) {
         let modes: &[&str] = if unit.gives_mode { &["displacement", "displacement_rate"] } else { &[] };
         let estimate = about("estimate", axis, axes);
         for name in ["angle", "rate"].iter().chain(modes) {
-            body += &format!("    output.{} = state.{estimate}.{name};\n", about(name, axis, axes));
+            let _ = writeln!(body, "    output.{} = state.{estimate}.{name};", about(name, axis, axes));
         }
         let lost = about("has_lost_lock", axis, axes);
-        body += &format!("    output.{lost} = state.{estimate}.has_lost_lock();\n");
+        let _ = writeln!(body, "    output.{lost} = state.{estimate}.has_lost_lock();");
     }
     glue.call("sample", &body);
     let shift = |axis: usize| {
@@ -51,7 +53,7 @@ fn add_start(glue: &mut Glue<'_>, unit: &KalmanUnit) {
     let (axes, mut first, mut body) = (unit.axes.len(), 0, String::new());
     for (axis, filter) in unit.axes.iter().enumerate() {
         let (estimate, own) = (about("estimate", axis, axes), &filter.estimate);
-        body += &format!(
+        let _ = write!(body,
             "    state.{estimate} = KalmanAxis::new(KalmanFeed::{:?}, {}, {}, {});
     kalman_axis::reset(mean, {first}, &VARIANCES_{axis}, &mut state.mean_{axis}, &mut state.covariance_{axis});
 ",

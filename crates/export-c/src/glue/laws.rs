@@ -1,5 +1,7 @@
 //! Laws about each axis: their members of the state, constants, start and step.
 
+use std::fmt::Write as _;
+
 use flexsc_core::numerics::attitude::AXES;
 
 use super::law_scope::LawScope;
@@ -132,7 +134,7 @@ impl LawScope<'_> {
         };
         let (output, law) = (about(output, axis, axes), self.state(&about("law", axis, axes)));
         text += &local("f64", "command", &format!("{law}.step(&motion, &reference, {lists})"));
-        text += &format!("    output.{output} = command;\n");
+        let _ = writeln!(text, "    output.{output} = command;");
         if axes == 1 { text } else { format!("\n    // {}\n", AXES[axis]) + &block(&text) }
     }
 

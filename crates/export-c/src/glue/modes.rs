@@ -1,5 +1,7 @@
 //! Control system with modes of operation: a supervisor, and the laws of each mode.
 
+use std::fmt::Write as _;
+
 use super::law_scope::LawScope;
 use super::member::{self, Member};
 use super::text::{VECTOR, block, camel, local, spread, vector_from};
@@ -53,7 +55,7 @@ fn add_laws(glue: &mut Glue<'_>, name: &str, laws: &LawScope<'_>) {
     let start = laws.start(glue);
     let about = format!("Starts the laws of the mode `{name}` without a past.");
     glue.function(&about, &format!("fn start_law_{name}()"), &["state: &mut State"], &start);
-    glue.init.push_str(&format!("    start_law_{name}(state);\n"));
+    let _ = writeln!(glue.init, "    start_law_{name}(state);");
     let estimates: &[&str] = if laws.has_attitude { &["angle: Vector3", "rate: Vector3"] } else { &[] };
     let given = ["state: &mut State", "input: &StepInput", "output: &mut StepOutput"];
     let parameters: Vec<&str> = given.iter().chain(estimates).copied().collect();
@@ -65,9 +67,8 @@ fn add_laws(glue: &mut Glue<'_>, name: &str, laws: &LawScope<'_>) {
 /// Adds the function that starts the laws of the present mode.
 fn add_start(glue: &mut Glue<'_>, modes: &ModeSystem) {
     let all = modes.modes.iter().enumerate().filter(|(_, mode)| mode.start.on_estimates().is_some());
-    let arms: String =
-        all.map(|(index, mode)| format!("        {index} => start_law_{}(state),\n", mode.name)).collect();
-    let body = selected(&arms);
+    let arms = all.map(|(index, mode)| format!("        {index} => start_law_{}(state),\n", mode.name));
+    let body = selected(&arms.collect::<Vec<_>>().concat());
     let about = "Starts the laws of the present mode without a past.";
     glue.function(about, "fn start_laws()", &["state: &mut State"], &body);
 }
@@ -103,7 +104,7 @@ fn step(glue: &Glue<'_>, modes: &ModeSystem) -> String {
     }
     let arms = modes.modes.iter().enumerate().map(|(index, mode)| {
         let decision = decide(glue, modes, mode);
-        let body = block(&decision).replace("\n", "\n    ");
+        let body = block(&decision).replace('\n', "\n    ");
         if decision.is_empty() { String::new() } else { format!("        {index} => {}\n", body.trim()) }
     });
     text += &selected(&arms.collect::<String>());
@@ -126,9 +127,9 @@ fn decide(glue: &Glue<'_>, modes: &ModeSystem, mode: &LawsOfMode) -> String {
     }
     let Some(scope) = law_scope(modes, mode) else { return text };
     let estimates = if scope.has_attitude { ", angle, rate" } else { "" };
-    text += &format!("    step_law_{}(state, input, output{estimates});\n", mode.name);
+    let _ = writeln!(text, "    step_law_{}(state, input, output{estimates});", mode.name);
     if mode.drives_wheels && modes.actuation.wheels.is_some() {
-        text += &format!("    torque = {};\n", vector_from("output.torque"));
+        let _ = writeln!(text, "    torque = {};", vector_from("output.torque"));
     }
     if mode.fires_jets {
         text += &actuation::jets(&modes.actuation, scope.laws.commands_changes());

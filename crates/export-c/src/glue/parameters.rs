@@ -254,7 +254,8 @@ pub fn add(glue: &mut Glue<'_>) {
         "Least and greatest value of each parameter: a factor of {FACTOR} from its default, which a team narrows."
     );
     glue.list(&about, "LIMITS", "[f64; 2]", &limits);
-    let values: String = all.iter().map(|own| format!("        parameters.{},\n", own.name)).collect();
+    let values =
+        all.iter().map(|own| format!("        parameters.{},\n", own.name)).collect::<Vec<_>>().concat();
     let mut check = format!(
         "    let values: [f64; {count}] = [\n{values}    ];
     for index in 0..{count} {{
@@ -307,7 +308,8 @@ impl FlightParameter {
 pub fn apply(glue: &Glue<'_>, start: &str) -> String {
     let running = glue.plan.parameters.iter().filter_map(|own| Some((own.running.as_ref()?, &own.name)));
     let own = running.filter(|(running, _)| running.starts_with(start));
-    own.map(|(running, name)| format!("    state.{running} = state.parameters.{name};\n")).collect()
+    let own = own.map(|(running, name)| format!("    state.{running} = state.parameters.{name};\n"));
+    own.collect::<Vec<_>>().concat()
 }
 
 /// Returns the expression of a parameter in a function with the state, or the literal of a number that is no parameter.

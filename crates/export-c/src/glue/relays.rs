@@ -1,5 +1,7 @@
 //! Relays about the axes: a decision at an event, and a poll at a sample.
 
+use std::fmt::Write as _;
+
 use super::Glue;
 use super::member::Member;
 use super::text::{about, local};
@@ -17,7 +19,7 @@ pub fn add(glue: &mut Glue<'_>, relays: &Relays) {
     }
     let relay = if axes == 1 { "relay" } else { "relay[axis]" };
     body += &local("RelayEvent", "event", "RelayEvent::from_number(input.event)");
-    body += &format!("    state.{relay}.decide(now, event, input.angle);\n");
+    let _ = writeln!(body, "    state.{relay}.decide(now, event, input.angle);");
     body += &local("RelayCommand", "command", &format!("state.{relay}.command"));
     body.push_str(
         "    output.torque = command.torque;

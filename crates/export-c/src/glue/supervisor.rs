@@ -1,5 +1,7 @@
 //! Supervisor of modes: its lists, and the functions that change the mode.
 
+use std::fmt::Write as _;
+
 use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::control::operation::{ModeFormula, ModeQuantity};
 
@@ -32,8 +34,10 @@ pub fn add(glue: &mut Glue<'_>, modes: &ModeSystem) {
         glue.members.push(Member::new(about, "change", "TargetChange", "TargetChange::NONE".to_owned()));
     }
     let exits = exits(modes);
-    glue.init +=
-        &format!("    state.supervisor = ModeSupervisor::start(now, &mut state.modes, &mut {exits});\n");
+    let _ = writeln!(
+        glue.init,
+        "    state.supervisor = ModeSupervisor::start(now, &mut state.modes, &mut {exits});"
+    );
 }
 
 /// Returns the list of the ends.
@@ -131,10 +135,10 @@ fn supervise(glue: &Glue<'_>, modes: &ModeSystem) -> String {
     let mut text = arrays(glue, modes);
     if !formulas.is_empty() {
         let count = formulas.len();
-        text += &format!("    let mut readings: [f64; {count}] = [0.0; {count}];\n");
+        let _ = writeln!(text, "    let mut readings: [f64; {count}] = [0.0; {count}];");
     }
     for (index, formula) in formulas.iter().enumerate() {
-        text += &format!("    readings[{index}] = {};\n", reading(glue, modes, formula));
+        let _ = writeln!(text, "    readings[{index}] = {};", reading(glue, modes, formula));
     }
     let readings = if formulas.is_empty() { "&[]" } else { "&readings" };
     let steps = if modes.tables.steps.is_empty() {

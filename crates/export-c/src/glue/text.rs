@@ -53,7 +53,8 @@ pub fn local(kind: &str, name: &str, value: &str) -> String {
 /// Returns the statements that set an array to the components of a value.
 pub fn spread(array: &str, value: &str, components: &[&str]) -> String {
     let each = components.iter().enumerate();
-    each.map(|(index, component)| format!("    {array}[{index}] = {value}.{component};\n")).collect()
+    let each = each.map(|(index, component)| format!("    {array}[{index}] = {value}.{component};\n"));
+    each.collect::<Vec<_>>().concat()
 }
 
 /// Returns statements as a block of its own.
@@ -146,7 +147,7 @@ impl<'a> DebugReader<'a> {
             }
             _ if word.starts_with(|first: char| first.is_ascii_uppercase()) => {
                 let kind = member.and_then(|(name, member)| member_type(name, member)).unwrap_or_default();
-                self.text += &format!("{kind}::{word}");
+                self.text.extend([&*kind, "::", word]);
             }
             _ => self.text += word,
         }

@@ -87,10 +87,9 @@ fn needed_modules<'a>(sources: &[SourceFile<'a>], text: &str) -> Vec<SourceFile<
 fn manifest(plan: &Plan<'_>) -> String {
     format!(
         "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\nrust-version = \"1.89\"\nlicense = \"MIT OR Apache-2.0\"\n\
-         description = \"Control system of {}, exported by flexsc {}\"\npublish = false\n\n[lib]\ntest = false\ndoctest = false\n\n\
+         description = \"Control system, exported by flexsc {}\"\npublish = false\n\n[lib]\ntest = false\ndoctest = false\n\n\
          # A workspace of its own, wherever the directory is.\n[workspace]\n",
         plan.prefix,
-        plan.origin.file,
         env!("CARGO_PKG_VERSION")
     )
 }
@@ -98,7 +97,7 @@ fn manifest(plan: &Plan<'_>) -> String {
 fn library(plan: &Plan<'_>, needed: &[SourceFile<'_>]) -> String {
     let mut modules: Vec<&str> = needed.iter().map(|own| own.module).chain(["control_system"]).collect();
     modules.sort_unstable();
-    let modules: String = modules.iter().map(|name| format!("pub mod {name};\n")).collect();
+    let modules: String = modules.iter().flat_map(|name| ["pub mod ", name, ";\n"]).collect();
     format!(
         "//! Control system of {}, exported by flexsc {}: see README.md.\n\n#![no_std]\n#![forbid(unsafe_code)]\n\
          #![allow(clippy::all, reason = \"the text is that of flexsc, where it is checked\")]\n\n{modules}\n\
