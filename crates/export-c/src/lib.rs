@@ -1,6 +1,7 @@
-//! Control systems of scenarios as C99 for flight computers, translated from the Rust code that the engine calls.
+//! Control systems of scenarios for flight computers: as C99, translated from the Rust code that the engine calls, or as a crate of it.
 //!
 //! - [`control_system`]: the control system of a scenario, of plain laws, as Rust runs it;
+//! - `glue`: the functions that call its units, as a module in the subset of Rust that is translated;
 //! - [`mod@translate`]: the subset of Rust in which these laws are written, to C99, evaluated in the same order, so that both return
 //!   equal bits under a compiler that keeps IEEE 754;
 //! - [`package`]: the files that are exported; [`vectors`]: calls of a run, which the exported code replays; [`self_test`]: a hash
