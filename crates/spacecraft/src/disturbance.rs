@@ -19,6 +19,7 @@ use crate::axes::Axis;
 use crate::load_density::LoadDensity;
 use crate::load_lines::LoadLines;
 use crate::machine_load::{MachineLoad, ToneLoad};
+use crate::random_lines::RandomLines;
 use crate::shaped_load::ShapedLoad;
 use crate::sine::Sine;
 
@@ -270,6 +271,9 @@ impl DisturbanceState {
         let machine = body.and_then(|body| {
             let unit = |part| disturbance.unit_effect(body, part);
             match (&disturbance.density, &disturbance.lines) {
+                (Some(density), _) if density.table.is_some() => {
+                    Some(MachineLoad::Random(RandomLines::new(density, unit, &mut draws)))
+                }
                 (Some(density), _) => ShapedLoad::new(density, unit, &mut draws).map(MachineLoad::Shaped),
                 (None, Some(lines)) => Some(MachineLoad::Tones(ToneLoad::new(lines, unit, &mut draws))),
                 (None, None) => None,
@@ -293,11 +297,6 @@ impl DisturbanceState {
             draws,
             drawn: 0.0,
         }
-    }
-
-    /// Returns true for a broadband load whose density is a table: a run has no filters for it.
-    pub fn lacks_run(&self) -> bool {
-        self.disturbance.density.as_ref().is_some_and(|density| density.table.is_some())
     }
 
     /// Returns the instant of the next noise draw or pulse edge.

@@ -14,5 +14,6 @@ pub mod load_density;
 pub mod load_lines;
 mod machine_load;
 pub mod manoeuvre;
+mod random_lines;
 mod shaped_load;
 pub mod sine;

@@ -7,13 +7,16 @@ use flexsc_numerics::random::Stream;
 use flexsc_numerics::time::Span;
 
 use crate::load_lines::LoadLines;
+use crate::random_lines::RandomLines;
 use crate::shaped_load::ShapedLoad;
 
 /// State of a load.
 #[derive(Clone, Debug)]
 pub enum MachineLoad {
-    /// Broadband load.
+    /// Broadband load between corners.
     Shaped(ShapedLoad),
+    /// Broadband load by a table.
+    Random(RandomLines),
     /// Lines.
     Tones(ToneLoad),
 }
@@ -76,6 +79,7 @@ impl MachineLoad {
     pub fn step(&self) -> Span {
         match self {
             Self::Shaped(load) => load.step(),
+            Self::Random(load) => load.step(),
             Self::Tones(load) => load.step,
         }
     }
@@ -84,6 +88,7 @@ impl MachineLoad {
     pub fn advance(&mut self, draws: &mut Stream) {
         match self {
             Self::Shaped(load) => load.advance(draws),
+            Self::Random(load) => load.advance(),
             Self::Tones(load) => load.steps += 1,
         }
     }
@@ -92,6 +97,7 @@ impl MachineLoad {
     pub fn effect(&self) -> ForceEffect {
         match self {
             Self::Shaped(load) => load.effect(),
+            Self::Random(load) => load.effect(),
             Self::Tones(load) => load.effect(),
         }
     }
