@@ -1,4 +1,4 @@
-"""Reference of tests/density_tables.rs and crates/spacecraft/src/random_lines.rs: variances of loads by
+"""Reference of tests/density_tables.rs and crates/spacecraft/src/held_lines.rs: variances of loads by
 tables of densities, and the line of sight of the bench of broadband.py under one.
 
 The variance of an output is the integral of the density times twice its mean square under a sine of unit

@@ -1,8 +1,9 @@
-//! Broadband force and torque during a run by a table of their densities: a sum of lines of random frequency and phase.
+//! Force and torque at a point during a run that are sums of lines, held from step to step: the lines of a machine, and a broadband load by
+//! a table of its densities.
 //!
-//! The band is cut at the rows of the table and into strips between. Each strip has one line, of a frequency within it and with its power
-//! (\[ShinozukaDeodatis91\]): Gaussian in the limit of many strips, with the variance of the table in each run. The frequencies have
-//! no common period, so that the load does not repeat.
+//! The band of a table is cut at its rows and into strips between. Each strip has one line, of a random phase, a frequency within it and its
+//! power (\[ShinozukaDeodatis91\]): Gaussian in the limit of many strips, with the variance of the table in each run. The frequencies
+//! have no common period, so that the load does not repeat.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -12,33 +13,46 @@ use flexsc_numerics::random::Stream;
 use flexsc_numerics::time::Span;
 
 use crate::load_density::LoadDensity;
+use crate::load_lines::{LoadHarmonic, LoadLines};
 
 /// Number of strips of equal ratio over the band, beside the cuts at the rows of the table.
 const STRIPS: f64 = 1000.0;
 /// Product of an exponent and a logarithm below which a power of the frequency integrates like its inverse.
 const FLAT: f64 = 1e-12;
 
-/// State of a broadband load by a table.
+/// State of a sum of lines.
 #[derive(Clone, Debug)]
-pub struct RandomLines {
+pub struct HeldLines {
     /// Effect of a unit of each component.
     units: [ForceEffect; 6],
-    lines: Vec<RandomLine>,
+    lines: Vec<HeldLine>,
     step: Span,
 }
 
-/// Line of all components that have a part in one of the independent loads.
+/// Line of all components of a load.
 #[derive(Clone, Debug)]
-struct RandomLine {
+struct HeldLine {
     amplitudes: [f64; 6],
     /// Cosine and sine in the middle of the present step, and of the turn in a step.
     phasor: [f64; 2],
     turn: [f64; 2],
 }
 
-impl RandomLines {
+impl HeldLine {
+    /// Creates a line by its amplitudes, its frequency (Hz) and its phase at the start, held for steps.
+    fn new(amplitudes: [f64; 6], hertz: f64, phase: f64, step: Span) -> Self {
+        let turn = TAU * hertz * step.seconds();
+        // A sine that is held at the middle of each step has less of its amplitude.
+        let held = libm::sin(0.5 * turn) / (0.5 * turn);
+        let of = |angle: f64| [libm::cos(angle), libm::sin(angle)];
+        let amplitudes = amplitudes.map(|amplitude| amplitude / held);
+        Self { amplitudes, phasor: of(phase - 0.5 * turn), turn: of(turn) }
+    }
+}
+
+impl HeldLines {
     /// Creates the load of a density's table at frequencies and phases that are drawn; `unit` has the effect of a unit of each component.
-    pub fn new(density: &LoadDensity, unit: impl Fn(usize) -> ForceEffect, draws: &mut Stream) -> Self {
+    pub fn of_table(density: &LoadDensity, unit: impl Fn(usize) -> ForceEffect, draws: &mut Stream) -> Self {
         let (factor, step) = (density.correlation_factor(), density.step());
         let strips = strips(density);
         let mut lines = Vec::new();
@@ -46,22 +60,26 @@ impl RandomLines {
             for (hertz, powers) in &strips {
                 let part = |place: usize| factor[(place, own)] * f64::sqrt(2.0 * powers[place]);
                 let amplitudes: [f64; 6] = std::array::from_fn(part);
-                if amplitudes == [0.0; 6] {
-                    continue;
+                if amplitudes != [0.0; 6] {
+                    let hertz = hertz.start + (hertz.end - hertz.start) * draws.uniform();
+                    lines.push(HeldLine::new(amplitudes, hertz, TAU * draws.uniform(), step));
                 }
-                let frequency = hertz.start + (hertz.end - hertz.start) * draws.uniform();
-                let turn = TAU * frequency * step.seconds();
-                // A sine that is held at the middle of each step has less of its amplitude.
-                let held = libm::sin(0.5 * turn) / (0.5 * turn);
-                let of = |angle: f64| [libm::cos(angle), libm::sin(angle)];
-                lines.push(RandomLine {
-                    amplitudes: amplitudes.map(|amplitude| amplitude / held),
-                    phasor: of(TAU * draws.uniform()),
-                    turn: of(turn),
-                });
             }
         }
         Self { units: std::array::from_fn(unit), lines, step }
+    }
+
+    /// Creates the lines of a machine at a frequency within the tolerance and a phase of the machine, both drawn.
+    pub fn of_machine(lines: &LoadLines, unit: impl Fn(usize) -> ForceEffect, draws: &mut Stream) -> Self {
+        let [from, to] = lines.range();
+        let frequency = from + (to - from) * draws.uniform();
+        let (start, step) = (TAU * draws.uniform(), lines.step());
+        let line = |harmonic: &LoadHarmonic| {
+            let multiple = lines.multiple(harmonic);
+            let phase = multiple * start + harmonic.phase.get();
+            HeldLine::new(harmonic.amplitudes(), multiple * frequency / TAU, phase, step)
+        };
+        Self { units: std::array::from_fn(unit), lines: lines.harmonics.iter().map(line).collect(), step }
     }
 
     /// Returns the time for which the load is held.
@@ -71,7 +89,7 @@ impl RandomLines {
 
     /// Goes on by a step.
     pub fn advance(&mut self) {
-        for RandomLine { phasor: [cos, sin], turn, .. } in &mut self.lines {
+        for HeldLine { phasor: [cos, sin], turn, .. } in &mut self.lines {
             (*cos, *sin) = (*cos * turn[0] - *sin * turn[1], *cos * turn[1] + *sin * turn[0]);
         }
     }
@@ -152,15 +170,15 @@ mod tests {
         let expected = [4.015_953_732_622e-5, 1.606_381_493_049e-4, 3e-4, 1.039_720_770_84e-7, 0.0, 0.0];
         for run in 0..3 {
             let mut draws = Seed { scenario: 3, run }.stream("load");
-            let mut lines = RandomLines::new(&density, unit, &mut draws);
+            let mut lines = HeldLines::of_table(&density, unit, &mut draws);
             let step = lines.step().seconds();
             assert!((step * 20.0 * 300.0 - 1.0).abs() < 1e-9, "{step}");
-            let held = |line: &RandomLine| {
+            let held = |line: &HeldLine| {
                 let half = 0.5 * libm::atan2(line.turn[1], line.turn[0]);
                 libm::sin(half) / half
             };
             let product = |one: usize, other: usize| {
-                let of = |line: &RandomLine| {
+                let of = |line: &HeldLine| {
                     0.5 * line.amplitudes[one] * line.amplitudes[other] * held(line) * held(line)
                 };
                 lines.lines.iter().map(of).sum::<f64>()
