@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::time::Instant;
 
 use flexsc_core::Scenario;
-use flexsc_core::analysis::noise::{LineLoop, WheelImbalance, WheelOutput};
+use flexsc_core::analysis::noise::{LineLoop, LineSource, WheelOutput, WheelSpectrum};
 use flexsc_core::worst_case::LineSearch;
 
 /// Number of passes.
@@ -78,11 +78,11 @@ fn main() {
     let wide = scenario(MODES, 20, "");
     let speeds: Vec<f64> = (1..=100).map(|step| std::f64::consts::TAU * f64::from(step)).collect();
     measure("100 speeds, 20 orders, 50 modes, 2 lines of sight", || {
-        let imbalance = WheelImbalance::from_scenario(&wide).expect("wheels").expect("imbalance");
+        let source = LineSource::of_wheels(&wide).expect("wheels").expect("imbalance");
         let lines = LineLoop::from_scenario(&wide).expect("a loop");
         let outputs =
             ["line_of_sight0_x", "line_of_sight0_y"].map(|name| lines.output(name).expect("an output"));
-        imbalance.spectrum(&lines, &speeds, &outputs).expect("lines").rms[0][50]
+        WheelSpectrum::new(&source, &lines, &speeds, &outputs).expect("lines").rms[0][50]
     });
     let uncertain = scenario(3, 3, UNCERTAIN);
     measure("worst case of seven keys, 200 points, 8 modes", || {

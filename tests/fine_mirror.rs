@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::fine_mirror::MirrorLoop;
-use flexsc_core::analysis::noise::{LineLoop, NoisyLoop, SamplePlace};
+use flexsc_core::analysis::noise::{LineLoop, LoadedLoop, NoisyLoop, OutputLines, SamplePlace};
 use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::record::{Column, Detail, Trace};
 use nalgebra::{Complex, DMatrix, DVector};
@@ -77,7 +77,9 @@ fn lines_and_periodic_motion_behind_the_mirror_are_those_of_the_closed_form() {
     let outputs = ["line_of_sight0_x", "line_of_sight0_x_before_mirror", "mirror0_x"].map(output);
     for (hertz, left) in [(22.0, 0.557_250_440_111_785_6), (98.112_21, 1.641_212_396_499_938_6)] {
         let load = lines.torque(0);
-        let found = lines.lines(TAU * hertz, std::slice::from_ref(&load), &outputs).expect("lines").remove(0);
+        let loaded = LoadedLoop::new(&lines, &outputs, std::slice::from_ref(&load)).expect("loads");
+        let found = loaded.lines(TAU * hertz).expect("lines").remove(0);
+        let found: Vec<_> = found.into_iter().map(|lines| OutputLines::new(lines, 1.0)).collect();
         let [behind, before] = [0, 1].map(|place| found[place].direct.amplitude);
         assert!((behind / before / left - 1.0).abs() < 1e-9, "{hertz} Hz: {}", behind / before);
         // Of all lines, with those that the law makes at 10 Hz and the mirror at 1 kHz.

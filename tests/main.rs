@@ -179,6 +179,7 @@ mod cli;
 mod correlated_loads;
 mod costs;
 mod cubesat;
+mod density_tables;
 mod extremes;
 mod help;
 #[cfg(all(target_os = "linux", feature = "parquet"))]

@@ -100,6 +100,27 @@ fn a_measured_path_takes_the_place_of_the_model() {
     agree("model", rms(&dir)[0][1], model[0][1], 1e-12);
 }
 
+/// A wheel about x whose static imbalance turns from y to z: of a path along y alone, the line is its response times c W².
+#[test]
+fn wheels_go_by_measured_paths() {
+    let dir = Dir::new();
+    let path = |force: &str, response: &str| {
+        format!(
+            "{{ point = \"rotor\", about = \"x\", force = \"{force}\", table = [[10, {response}, 0], [200, {response}, 0]] }}"
+        )
+    };
+    let paths = format!("measured = [{}, {}]\nperiod = 0.01\noptics", path("y", "1e-6"), path("z", "0"));
+    let imbalance = "inertia = 1e-7\nimbalance = { static = [2e-6, 0, 0], point = \"rotor\" }\n";
+    let text = bench(0.001, "").replace("period = 0.01\noptics", &paths);
+    dir.write("bench.toml", text.replace("inertia = 1e-7\n", imbalance));
+    let command = "spectrum bench.toml --signal line_of_sight0_x --speeds 300:400:2 --json";
+    let report: Value = dir.run(command).exits(0).json();
+    for (place, speed) in [300.0_f64, 400.0].into_iter().enumerate() {
+        let expected = 1e-6 * 2e-6 * speed * speed / f64::sqrt(2.0);
+        agree("line", number(&report["wheels"]["rms"][0][place]), expected, 1e-9);
+    }
+}
+
 #[test]
 fn measured_paths_that_do_not_hold_are_refused() {
     let dir = Dir::new();

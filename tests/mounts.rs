@@ -6,7 +6,7 @@ use flexsc_core::Scenario;
 use flexsc_core::analysis::body_poles::WhirlPoles;
 use flexsc_core::analysis::eigenvalues::eigenvalues;
 use flexsc_core::analysis::linear_model::LinearModel;
-use flexsc_core::analysis::noise::{LineLoop, WheelImbalance};
+use flexsc_core::analysis::noise::{LineLoop, LineSource, WheelSpectrum};
 use flexsc_core::dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_core::numerics::attitude::Vector;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -216,13 +216,13 @@ fn harmonics_meet_the_whirl() {
             "harmonics = [{ order = 2.0, torque = 1e-8 }, { order = 0.6, torque = 1e-8 }]",
         ),
     ]);
-    let imbalance = WheelImbalance::from_scenario(&scenario).expect("wheels").expect("imbalance");
+    let source = LineSource::of_wheels(&scenario).expect("wheels").expect("imbalance");
     let lines = LineLoop::from_scenario(&scenario).expect("a loop");
     let output = lines.output("line_of_sight0_x").expect("an output");
-    let found = imbalance.largest_spectrum(&lines, &[output]).expect("lines").expect("a largest speed");
-    let is_met = |hertz: f64| found.speed_rad_s.iter().any(|own| (own / TAU / hertz - 1.0).abs() < 1e-7);
+    let speeds = source.examined_speeds(&lines, &[output]).expect("speeds");
+    let is_met = |hertz: f64| speeds.iter().any(|own| (own / TAU / hertz - 1.0).abs() < 1e-7);
     for hertz in [18.0, 45.0, 10.914_103_126_635, 25.116_550_748_368] {
-        assert!(is_met(hertz), "{hertz} Hz: {:?}", found.speed_rad_s);
+        assert!(is_met(hertz), "{hertz} Hz: {speeds:?}");
     }
 }
 
@@ -268,11 +268,11 @@ fn lines_of_a_wheel_on_its_mount() {
 /// Returns the amplitudes of the first wheel's lines about x and y, as the linear loop of the scenario has them.
 fn wheel_lines(changes: &[(&str, &str)]) -> [f64; 2] {
     let scenario = scenario(changes);
-    let imbalance = WheelImbalance::from_scenario(&scenario).expect("wheels").expect("imbalance");
+    let source = LineSource::of_wheels(&scenario).expect("wheels").expect("imbalance");
     let lines = LineLoop::from_scenario(&scenario).expect("a loop");
     let outputs = ["line_of_sight0_x", "line_of_sight0_y"].map(|name| lines.output(name).expect("an output"));
-    let found = imbalance.lines(&lines, &[SPEED], &outputs).expect("lines");
-    [0, 1].map(|about| found[0].outputs[about].direct.amplitude)
+    let found = WheelSpectrum::new(&source, &lines, &[SPEED], &outputs).expect("lines");
+    [0, 1].map(|about| found.lines[0].outputs[about].direct.amplitude)
 }
 
 /// Name, replacements in the bench, and amplitudes about x and y (rad).

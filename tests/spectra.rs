@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::noise::{
-    LineLoop, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, SpectralLine, Window, WindowRms,
-    WindowVariances, WindowWeights, cumulative_rms,
+    LineLoop, LoadedLoop, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputLines, SpectralLine,
+    Window, WindowRms, WindowVariances, WindowWeights, cumulative_rms,
 };
 
 use flexsc_core::record::Detail;
@@ -202,8 +202,9 @@ fn a_torque_that_turns_has_a_line_and_aliases() {
     let text = wheel_loop(0.0);
     let scenario = Scenario::parse("wheel.toml", &text).expect("valid");
     let lines = LineLoop::from_scenario(&scenario).expect("linear");
-    let angle = noisy_wheel(SENSOR, "").output("angle").expect("exists");
-    let found = &lines.lines(22.0, &[lines.torque(0)], &[angle]).expect("damped")[0][0];
+    let angle = [noisy_wheel(SENSOR, "").output("angle").expect("exists")];
+    let loaded = LoadedLoop::new(&lines, &angle, &[lines.torque(0)]).expect("loads");
+    let found = OutputLines::new(loaded.lines(22.0).expect("damped").remove(0).remove(0), 1.0);
     agree("direct", found.direct.amplitude, 0.007_317_976_819_283, 1e-11);
     assert_eq!(found.direct.frequency_rad_s, 22.0);
     let alias = found.aliases[0];

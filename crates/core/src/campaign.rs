@@ -29,8 +29,6 @@ use std::time::Instant as WallInstant;
 use flexsc_formats::document::{Document, ScenarioError, key};
 use flexsc_record::{Detail, OutputName, Provenance, Record};
 use flexsc_spacecraft::body::Planar;
-use flexsc_spacecraft::disturbance::Disturbance;
-use flexsc_spacecraft::load_density::TABLE_HAS_NO_RUN;
 use thiserror::Error;
 use toml::{Table, Value};
 
@@ -151,11 +149,6 @@ impl Campaign {
         design: Design,
     ) -> Result<Self, ScenarioError> {
         scenario.written.inline_files();
-        let tabled = |own: &Disturbance| own.density.as_ref().is_some_and(|density| density.table.is_some());
-        if let Some(index) = scenario.disturbance.iter().position(tabled) {
-            let (origin, key) = (origin.to_owned(), format!("disturbance[{index}].density.table"));
-            return Err(ScenarioError::Key { origin, key, why: TABLE_HAS_NO_RUN.to_owned() });
-        }
         if let Some(key) = scenario.measured_path() {
             let why = PATH_HAS_NO_RUN.to_owned();
             return Err(ScenarioError::Key { origin: origin.to_owned(), key, why });

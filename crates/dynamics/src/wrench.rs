@@ -94,6 +94,18 @@ impl AddAssign<&Self> for ForceEffect {
 }
 
 impl ForceEffect {
+    /// Returns the effect of a unit of the force along, or of the torque about, x, y or z at a named point: the force first.
+    pub fn unit(body: &ThreeAxisModel, point: &str, part: usize) -> Self {
+        let mut unit = Self::default();
+        let direction = Vector::ith(part % 3, 1.0);
+        if part < 3 {
+            unit.add(body, point, &Vector::zeros(), &direction);
+        } else {
+            unit.add_torque(body, point, &direction);
+        }
+        unit
+    }
+
     /// Adds another effect, multiplied by a number.
     pub fn add_scaled(&mut self, other: &Self, by: f64) {
         self.torque += other.torque * by;

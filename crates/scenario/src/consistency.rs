@@ -1,6 +1,5 @@
 //! Consistency of the keys of a scenario with each other.
 
-use flexsc_control::actuator::PerWheel;
 use flexsc_control::law::{AttitudeProfile, AttitudeTarget};
 use flexsc_control::offers::Offers;
 use flexsc_control::requirement::OFF_HUB;
@@ -97,32 +96,9 @@ impl ScenarioSpec {
         errors.extend(errors_in("disturbance", &self.disturbance, Disturbance::validate_three_axis));
         errors.extend(self.guidance_conflict());
         errors.extend(errors_in("line_of_sight", &self.line_of_sight, |line| line.validate(body, offers)));
-        errors.extend(self.wheels_beside_measured_path());
         if body.small_angles.is_some() {
             self.require_small_angles(model, body, errors);
         }
-    }
-
-    /// Checks that no unbalanced wheels are at a point of a measured path, which is for the loads of disturbances.
-    fn wheels_beside_measured_path(&self) -> Option<ConfigError> {
-        let members = self.actuator.members();
-        let wheels = members.iter().find_map(|member| member.kind.unbalanced_wheels())?;
-        let imbalance = wheels.imbalance.as_ref()?;
-        let is_there = |point: &String| {
-            let carries = match &wheels.points {
-                Some(PerWheel::All(own)) => own == point,
-                Some(PerWheel::Each(all)) => all.contains(point),
-                None => false,
-            };
-            carries || imbalance.point.as_ref() == Some(point)
-        };
-        let mut lines = self.line_of_sight.iter().enumerate();
-        lines.find_map(|(line, own)| {
-            let path = own.measured.iter().position(|path| is_there(&path.point))?;
-            let why = "is that of wheels with `imbalance`, whose lines go by the model; measured paths are for the `density` and `lines` of a \
-                       `[[disturbance]]`";
-            Some(ConfigError::new(format!("line_of_sight[{line}].measured[{path}].point"), why))
-        })
     }
 
     /// Checks that no targets are beside a guidance of a program.

@@ -11,7 +11,6 @@ use flexsc_numerics::quantity::NonNegative;
 use flexsc_numerics::time::Span;
 use flexsc_record::Detail;
 use flexsc_relay_kernel::{SWITCHINGS, shortest_window};
-use flexsc_spacecraft::load_density::LoadDensity;
 
 use super::Scenario;
 use super::pace::{PUSHES, QUIET_STEPS, STEP, SWITCHES, TURNS};
@@ -320,8 +319,9 @@ impl Scenario {
             let until = disturbance.to.map_or(duration, |to| to.get().min(duration));
             let span = (until - disturbance.from.get()).max(0.0);
             let mut add = |key: &str, count: f64| steps.push((format!("disturbance[{index}].{key}"), count));
-            if let Some(step) = disturbance.density.as_ref().and_then(LoadDensity::step) {
-                add("density.upper", span / step.seconds());
+            if let Some(density) = &disturbance.density {
+                let key = if density.table.is_some() { "density.table" } else { "density.upper" };
+                add(key, span / density.step().seconds());
             }
             if let Some(lines) = &disturbance.lines {
                 add("lines.frequency", span / lines.step().seconds());

@@ -4,7 +4,6 @@ use flexsc_control::custom::PartError;
 use flexsc_numerics::time::Instant;
 use flexsc_record::RecordError;
 use flexsc_scenario::PATH_HAS_NO_RUN;
-use flexsc_spacecraft::load_density::TABLE_HAS_NO_RUN;
 use thiserror::Error;
 
 /// Error that ends a simulation.
@@ -76,12 +75,6 @@ pub enum SimulationError {
         at: Instant,
         /// Number of events within a nanosecond.
         count: u32,
-    },
-    /// A broadband load over frequency has no filters that a run could simulate.
-    #[error("`disturbance[{index}].density.table` {TABLE_HAS_NO_RUN}")]
-    DensityTable {
-        /// Index of the disturbance.
-        index: usize,
     },
     /// A measured path to a line of sight is a response over frequency, which a run does not have.
     #[error("`{key}` {PATH_HAS_NO_RUN}")]

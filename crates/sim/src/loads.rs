@@ -88,11 +88,6 @@ impl Loads {
         self.measured_path.as_ref()
     }
 
-    /// Returns the index of a broadband disturbance that a run cannot simulate, if there is one.
-    pub fn density_without_run(&self) -> Option<usize> {
-        self.disturbances.iter().position(DisturbanceState::lacks_run)
-    }
-
     /// Sets the external torque about each axis (N m), which acts from `now` on.
     pub fn set_external_torque(&mut self, now: Instant, torque: [f64; 3]) {
         self.external_torque = torque;

@@ -4,7 +4,6 @@ use flexsc_control::disturbance::{DisturbanceRun, DisturbanceSpec, PointLoad};
 use flexsc_control::sensor::Truth;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_dynamics::wrench::{ForceEffect, Wrench};
-use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 
@@ -35,21 +34,9 @@ struct PointEffects {
 impl PointEffects {
     /// Returns the effects at a point of a body.
     fn new(body: &ThreeAxisModel, point: &str, has_torque: bool) -> Self {
-        let unit = |axis: usize| Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
-        let force = |axis: usize| {
-            let mut effect = ForceEffect::default();
-            effect.add(body, point, &Vector::zeros(), &unit(axis));
-            effect
-        };
-        let shapes = body.shapes(point);
-        let torque = |axis: usize| ForceEffect {
-            torque: unit(axis),
-            forces: shapes.iter().map(|(_, rotation)| rotation[axis]).collect(),
-            levers: vec![Vector::zeros(); shapes.len()],
-            force: Vector::zeros(),
-        };
-        let torques = if has_torque { (0..3).map(torque).collect() } else { Vec::new() };
-        Self { torques, forces: (0..3).map(force).collect() }
+        let unit = |part| ForceEffect::unit(body, point, part);
+        let torques = if has_torque { (3..6).map(unit).collect() } else { Vec::new() };
+        Self { torques, forces: (0..3).map(unit).collect() }
     }
 }
 

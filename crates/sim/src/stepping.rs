@@ -144,9 +144,6 @@ impl Simulation {
     /// # Errors
     /// Fails like [`Simulation::run_until`].
     pub fn open(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if let Some(index) = self.loads.density_without_run() {
-            return Err(SimulationError::DensityTable { index });
-        }
         if let Some(key) = self.loads.measured_path() {
             return Err(SimulationError::MeasuredPath { key: key.clone() });
         }

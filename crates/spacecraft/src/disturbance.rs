@@ -16,9 +16,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::axes::Axis;
+use crate::held_lines::HeldLines;
 use crate::load_density::LoadDensity;
 use crate::load_lines::LoadLines;
-use crate::machine_load::{MachineLoad, ToneLoad};
+use crate::machine_load::MachineLoad;
 use crate::shaped_load::ShapedLoad;
 use crate::sine::Sine;
 
@@ -106,16 +107,6 @@ impl Disturbance {
     pub fn place<'a>(&'a self, body: &'a ThreeAxisModel) -> &'a str {
         let first = body.points.first().map_or("", |point| &point.name);
         self.point.as_deref().unwrap_or(first)
-    }
-
-    /// Returns the effect of a unit of the force along, or of the torque about, x, y or z at the point: the force first.
-    pub fn unit_effect(&self, body: &ThreeAxisModel, part: usize) -> ForceEffect {
-        if part < 3 {
-            return self.effect(body, &unit(part));
-        }
-        let mut turn = ForceEffect::default();
-        turn.add_torque(body, self.place(body), &unit(part - 3));
-        turn
     }
 
     /// Returns the rows of the table; empty without one.
@@ -268,10 +259,15 @@ impl DisturbanceState {
     pub fn new(disturbance: &Disturbance, body: Option<&ThreeAxisModel>, mut draws: Stream) -> Self {
         let noisy = disturbance.noise.get() > 0.0 && disturbance.period.is_some();
         let machine = body.and_then(|body| {
-            let unit = |part| disturbance.unit_effect(body, part);
+            let unit = |part| ForceEffect::unit(body, disturbance.place(body), part);
             match (&disturbance.density, &disturbance.lines) {
+                (Some(density), _) if density.table.is_some() => {
+                    Some(MachineLoad::Lines(HeldLines::of_table(density, unit, &mut draws)))
+                }
                 (Some(density), _) => ShapedLoad::new(density, unit, &mut draws).map(MachineLoad::Shaped),
-                (None, Some(lines)) => Some(MachineLoad::Tones(ToneLoad::new(lines, unit, &mut draws))),
+                (None, Some(lines)) => {
+                    Some(MachineLoad::Lines(HeldLines::of_machine(lines, unit, &mut draws)))
+                }
                 (None, None) => None,
             }
         });
@@ -284,7 +280,9 @@ impl DisturbanceState {
             next: noisy.then(|| at(disturbance.from)),
             beat: disturbance.pulse.map(|_| (at(disturbance.from), false, at(disturbance.from))),
             units: match body.filter(|_| disturbance.table.is_some() && disturbance.is_force()) {
-                Some(body) => (0..3).map(|axis| disturbance.effect(body, &unit(axis))).collect(),
+                Some(body) => {
+                    (0..3).map(|axis| ForceEffect::unit(body, disturbance.place(body), axis)).collect()
+                }
                 None => Vec::new(),
             },
             row: 0,
@@ -293,11 +291,6 @@ impl DisturbanceState {
             draws,
             drawn: 0.0,
         }
-    }
-
-    /// Returns true for a broadband load whose density is a table: a run has no filters for it.
-    pub fn lacks_run(&self) -> bool {
-        self.disturbance.density.as_ref().is_some_and(|density| density.table.is_some())
     }
 
     /// Returns the instant of the next noise draw or pulse edge.
@@ -385,7 +378,7 @@ impl DisturbanceState {
     pub fn force_effect(&self, now: Instant, onto: &mut Wrench) {
         if !self.sines.is_empty() && self.acts(now) {
             let axis = self.disturbance.about.map_or(0, Axis::index);
-            let direction = unit(axis);
+            let direction = Vector::ith(axis, 1.0);
             onto.sines.extend(self.sines.iter().map(|sine| (direction, *sine)));
         }
         if let Some(push) = self.push.as_ref().filter(|_| self.acts(now)) {
@@ -401,11 +394,6 @@ fn at(time: Time) -> Instant {
 /// Returns the instant at a time (s) from the start of a run.
 fn instant(time: f64) -> Instant {
     Instant::START + Span::from_seconds(time)
-}
-
-/// Returns the unit vector along an axis.
-fn unit(axis: usize) -> Vector {
-    Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 })
 }
 
 /// Returns the force (N) in a row of a table.

@@ -10,6 +10,7 @@ pub mod axes;
 pub mod body;
 pub mod disturbance;
 pub mod environment;
+mod held_lines;
 pub mod load_density;
 pub mod load_lines;
 mod machine_load;

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// Twice the damping ratio of the two filters that make the corners.
 pub(crate) const TWICE_DAMPING: f64 = 1.4;
-/// Steps of a run in a period of the upper corner: the mean over a step is held for it, which takes 1.6 % of the density at the corner.
+/// Steps of a run in a period of the upper corner, or of the last row of a table: the mean over a step is held for it, which takes 1.6 % of the density at the corner.
 pub(crate) const STEPS: f64 = 20.0;
 
 /// Least ratio of the corners, at which the filters of runs keep half of the digits.
@@ -20,9 +20,6 @@ pub(crate) const LEAST_RATIO: f64 = 1e-8;
 
 /// Least eigenvalue of a correlation matrix, for rounded numbers.
 const LEAST: f64 = -1e-9;
-
-/// Reason why a table is refused in runs.
-pub const TABLE_HAS_NO_RUN: &str = "has no run: `spectrum` has it; for runs give `force` or `torque` between the corners `lower` and `upper`";
 
 /// Stationary Gaussian force and torque at a point, whose components are independent but for `correlation`: one-sided densities that are constant between two
 /// corners, or a table over frequency.
@@ -60,9 +57,10 @@ impl LoadDensity {
         Some([self.lower?.get(), self.upper?.get()])
     }
 
-    /// Returns the time for which a run holds the load (s); `None` for a table.
-    pub fn step(&self) -> Option<Span> {
-        self.corners().map(|[_, upper]| Span::from_seconds(TAU / (STEPS * upper)))
+    /// Returns the time for which a run holds the load.
+    pub fn step(&self) -> Span {
+        let highest = self.knots().into_iter().fold(0.0, f64::max);
+        Span::from_seconds(TAU / (STEPS * highest))
     }
 
     /// Returns the densities of the force along and the torque about x, y and z between the corners (N²/Hz, (N m)²/Hz).
@@ -76,6 +74,11 @@ impl LoadDensity {
     /// Returns the rows of the table; empty without one.
     fn rows(&self) -> &[Vec<f64>] {
         self.table.as_ref().map_or(&[], |table| table.rows())
+    }
+
+    /// Returns the rows of the table: frequency (Hz), and densities of the force along and the torque about x, y and z (N²/Hz, (N m)²/Hz).
+    pub(crate) fn table_rows(&self) -> Vec<(f64, [f64; 6])> {
+        self.rows().iter().map(|row| (row[0], std::array::from_fn(|place| of_row(row, place)))).collect()
     }
 
     /// Returns true if the density has a part along or about an axis: the force along x, y and z, then the torque.

@@ -96,7 +96,7 @@ impl ShapedLoad {
             Part { unit: effect, state, mean: 0.0 }
         };
         let parts = given.map(part).collect();
-        Some(Self { filters, parts, step: density.step()? })
+        Some(Self { filters, parts, step: density.step() })
     }
 
     /// Returns the time for which the load is held.

@@ -141,7 +141,7 @@ impl Integral<'_> {
         let densities = source.density.load_densities(frequency);
         let mut sum = SourcePower { lines: Vec::new(), density: 0.0, sampled: 0.0 };
         let before = source.loads.iter().map(|load| responses[*load].lines[output].clone()).collect();
-        let behind = self.transfer.behind_mirror(output, before);
+        let behind = self.transfer.loaded.behind_mirror(output, before);
         for ((load, size), lines) in source.loads.iter().zip(densities).zip(behind) {
             let own = &responses[*load];
             sum.sampled += size

@@ -12,12 +12,11 @@ use std::sync::OnceLock;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::reader_units::number;
 use flexsc_numerics::quadrature::nodes;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 
-use super::mirror_states::MirrorOutput;
 use super::motion::OutputRow;
 use super::period_rows::{ForcedMotion, PeriodRows, Piece, joined};
-use super::spectral_line::{OutputLines, SineLoad, SpectralLine};
+use super::spectral_line::LoadColumn;
 use crate::eigenvalues::eigenvalues;
 use crate::margins::frequency_response::{FrequencyResponse, modulus, real_product, unit_circle};
 use crate::open_loop::attitude_rows::seconds;
@@ -87,16 +86,13 @@ impl LineSolver {
     pub fn solve(
         &self,
         parts: &LoopParts<'_>,
-        loads: &[SineLoad],
+        loads: &[LoadColumn],
         turns: &LineFrequencies,
     ) -> Result<LoadedMotion, ConfigError> {
         let frequency = turns.load();
         let undamped = || undamped(frequency);
         // A load has no part in states of exposures.
-        let part = |column: &DVector<f64>, row: usize| column.get(row).copied().unwrap_or(0.0);
-        let entry = |row: usize, load: usize| {
-            Complex::new(part(&loads[load].cosine, row), -part(&loads[load].sine, row))
-        };
+        let entry = |row: usize, load: usize| loads[load].get(row).copied().unwrap_or_default();
         let forcing = DMatrix::from_fn(parts.body.a.nrows(), loads.len(), entry);
         let amplitudes = self.body.states(Complex::new(0.0, frequency), &forcing).ok_or_else(undamped)?;
         let alone = ForcedMotion { amplitudes, frequency };
@@ -244,26 +240,6 @@ impl LineFrequencies {
     /// Returns the frequency of the load (rad/s).
     pub fn load(&self) -> f64 {
         self.frequencies.last().copied().unwrap_or_default()
-    }
-
-    /// Returns the lines of an output behind a mirror, if it is behind one, whose complex amplitudes before the mirror a function
-    /// gives for each frequency.
-    pub fn lines_behind(
-        &self,
-        mirror: Option<&MirrorOutput>,
-        amplitude: impl Fn(usize) -> Complex<f64>,
-    ) -> OutputLines {
-        let line = |(frequency, value): (f64, Complex<f64>)| SpectralLine {
-            frequency_rad_s: frequency.abs(),
-            amplitude: modulus(value),
-        };
-        let each = self.frequencies.iter().enumerate();
-        let before: Vec<_> = each.map(|(place, frequency)| (*frequency, amplitude(place))).collect();
-        let behind = mirror.map_or_else(|| before.clone(), |mirror| mirror.lines(&before));
-        let mut all: Vec<SpectralLine> = behind.into_iter().map(line).collect();
-        let direct = all.pop().unwrap_or_default();
-        all.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
-        OutputLines { direct, aliases: all }
     }
 
     /// Returns the amplitudes at a frequency of values that are constant in each piece.

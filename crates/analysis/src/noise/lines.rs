@@ -11,13 +11,14 @@ use flexsc_formats::reader_units::ReaderUnits;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::line_solver::{Amplitudes, LineFrequencies, LineSolver, LoadedMotion, undamped};
+use super::measured_loads::VibrationLoad;
 use super::mirror_states::{MirrorOutput, with_mirrors};
 use super::motion::{Motion, OutputRow};
 use super::noisy_loop::{NoiseError, stable_loops};
 use super::output::{output_index, outputs};
 use super::period_rows::PeriodRows;
 use super::sample_times::SamplePlace;
-use super::spectral_line::{OutputLines, SineLoad};
+use super::spectral_line::LoadColumn;
 use crate::linear_model::Signal;
 use crate::margins::frequency_response::unit_circle;
 use crate::open_loop::attitude_rows::seconds;
@@ -94,55 +95,19 @@ impl<'a> LineLoop<'a> {
         before * self.mirror(output).map_or(1, |_| MirrorOutput::LINES)
     }
 
-    /// Returns the load of a torque that turns about one axis of the actuators.
-    pub fn torque(&self, axis: usize) -> SineLoad {
-        let cosine = self.parts.body.b.column(axis).into_owned();
-        SineLoad { sine: DVector::zeros(cosine.len()), cosine }
-    }
-
-    /// Returns the load of torques amplitude sin(w t + phase) (N m, rad), each with the axis of the actuators about which it
-    /// acts.
-    pub fn torques(&self, torques: &[(usize, f64, f64)]) -> SineLoad {
-        let body = &self.parts.body.b;
-        let mut load = SineLoad { cosine: DVector::zeros(body.nrows()), sine: DVector::zeros(body.nrows()) };
-        for (axis, amplitude, phase) in torques {
-            load.cosine += body.column(*axis) * (amplitude * libm::sin(*phase));
-            load.sine += body.column(*axis) * (amplitude * libm::cos(*phase));
-        }
-        load
-    }
-
-    /// Computes the lines of some outputs under each load alone, all of one frequency (rad/s).
-    ///
-    /// # Errors
-    /// A frequency at which a motion without damping grows without limit.
-    pub fn lines(
-        &self,
-        frequency: f64,
-        loads: &[SineLoad],
-        outputs: &[usize],
-    ) -> Result<Vec<Vec<OutputLines>>, ConfigError> {
-        let SolvedLines { turns, amplitudes, .. } = self.solved(frequency, loads, outputs)?;
-        let of_load = |load: usize| {
-            let lines = outputs.iter().enumerate();
-            lines
-                .map(|(place, output)| {
-                    let amplitude = |turn: usize| amplitudes[turn][(place, load)];
-                    turns.lines_behind(self.mirrors[*output].as_ref(), amplitude)
-                })
-                .collect()
-        };
-        Ok((0..loads.len()).map(of_load).collect())
+    /// Returns the load of a torque of 1 N m about one axis of the actuators.
+    pub fn torque(&self, axis: usize) -> VibrationLoad {
+        VibrationLoad::of_torque(axis, self.parts.body.b.column(axis).into_owned())
     }
 
     /// Solves for the lines of some outputs before mirrors under each load alone, all of one frequency (rad/s).
     ///
     /// # Errors
-    /// See [`Self::lines`].
+    /// A frequency at which a motion without damping grows without limit.
     pub(super) fn solved(
         &self,
         frequency: f64,
-        loads: &[SineLoad],
+        loads: &[LoadColumn],
         outputs: &[usize],
     ) -> Result<SolvedLines, ConfigError> {
         let turns = self.solver.turns(frequency);
@@ -184,7 +149,7 @@ impl<'a> LineLoop<'a> {
     /// Returns the amplitude of an output at the frequency of a load, before a mirror, as the integral over the motion.
     fn slow_line(
         &self,
-        load: &SineLoad,
+        load: &LoadColumn,
         output: usize,
         turns: &LineFrequencies,
     ) -> Result<Complex<f64>, ConfigError> {
@@ -201,12 +166,13 @@ impl<'a> LineLoop<'a> {
     /// Returns the periodic motion of the loop under a load of a frequency (rad/s).
     ///
     /// # Errors
-    /// See [`Self::lines`].
-    pub fn motion(&self, frequency: f64, load: &SineLoad) -> Result<TurningMotion, ConfigError> {
+    /// A frequency at which a motion without damping grows without limit.
+    pub fn motion(&self, frequency: f64, load: &VibrationLoad) -> Result<TurningMotion, ConfigError> {
         let whole = with_mirrors(&self.parts);
-        motion(&whole, &outputs(&whole).1, (frequency, load))
+        motion(&whole, &outputs(&whole).1, (frequency, &load.column()))
     }
 }
+
 /// Motion of a loop under a load that turns: from period to period it is multiplied by exp(j w P).
 pub struct TurningMotion {
     motion: Motion,
@@ -239,7 +205,7 @@ impl TurningMotion {
 fn motion(
     parts: &LoopParts<'_>,
     rows: &[OutputRow],
-    (frequency, load): (f64, &SineLoad),
+    (frequency, load): (f64, &LoadColumn),
 ) -> Result<TurningMotion, ConfigError> {
     let order = parts.body.a.nrows();
     let driven = driven(parts, frequency, load);
@@ -255,13 +221,13 @@ fn motion(
 }
 
 /// Returns the parts of a loop with two oscillators as further states of the body.
-fn driven<'a>(parts: &LoopParts<'a>, frequency: f64, load: &SineLoad) -> LoopParts<'a> {
+fn driven<'a>(parts: &LoopParts<'a>, frequency: f64, load: &LoadColumn) -> LoopParts<'a> {
     let mut parts = parts.clone();
     let order = parts.body.a.nrows();
     parts.body.resize(order + 2);
     let a = &mut parts.body.a;
-    a.view_mut((0, order), (load.cosine.len(), 1)).copy_from(&load.cosine);
-    a.view_mut((0, order + 1), (load.sine.len(), 1)).copy_from(&load.sine);
+    a.view_mut((0, order), (load.len(), 1)).copy_from(&load.map(|entry| entry.re));
+    a.view_mut((0, order + 1), (load.len(), 1)).copy_from(&load.map(|entry| -entry.im));
     (a[(order, order + 1)], a[(order + 1, order)]) = (-frequency, frequency);
     parts
 }

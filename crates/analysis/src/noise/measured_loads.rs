@@ -5,11 +5,15 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::ForceEffect;
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::inverse::inverse_3x3;
 use flexsc_scenario::{MeasuredPath, Scenario};
-use nalgebra::{Complex, DVector};
+use nalgebra::{Complex, DVector, Matrix3};
 
 use super::output::diagonal;
+use super::spectral_line::LoadColumn;
 use crate::linear_model::Signal;
 use crate::margins::frequency_response::{modulus, unit_circle};
 
@@ -32,27 +36,55 @@ pub struct VibrationLoad {
 pub struct VibrationPart {
     /// Number: the force along x, y and z, and then the torque.
     pub number: usize,
-    /// Amplitude (N, N m).
-    pub amplitude: f64,
-    /// Column of the rates of the body's states at this amplitude.
-    pub column: DVector<f64>,
+    /// Complex amplitude (N, N m).
+    pub amplitude: Complex<f64>,
+    /// Column of the rates of the body's states under a unit.
+    unit: DVector<f64>,
 }
 
 impl VibrationLoad {
-    /// Creates a load by the amplitudes of its components (N, N m), each with the column of a unit.
-    pub fn new(point: &str, amplitudes: [f64; 6], column: impl Fn(usize) -> DVector<f64>) -> Self {
-        let given = (0..6).filter(|number| amplitudes[*number] != 0.0);
-        let part = |number: usize| {
-            let amplitude = amplitudes[number];
-            VibrationPart { number, amplitude, column: column(number) * amplitude }
+    /// Creates a load at a point of a body by the complex amplitudes of its components (N, N m).
+    pub fn new(body: &ThreeAxisModel, point: &str, amplitudes: [Complex<f64>; 6]) -> Self {
+        let given = (0..6).filter(|number| amplitudes[*number] != Complex::ZERO);
+        let part = |number: usize| VibrationPart {
+            number,
+            amplitude: amplitudes[number],
+            unit: unit_column(body, point, number),
         };
         Self { point: point.to_owned(), parts: given.map(part).collect() }
     }
 
-    /// Returns the column of the rates of the body's states.
-    pub fn column(&self) -> DVector<f64> {
-        self.parts.iter().map(|part| &part.column).sum()
+    /// Creates the load of a unit torque about an axis, with the column of the rates of the body's states.
+    pub(super) fn of_torque(axis: usize, unit: DVector<f64>) -> Self {
+        let part = VibrationPart { number: 3 + axis, amplitude: Complex::ONE, unit };
+        Self { point: String::new(), parts: vec![part] }
     }
+
+    /// Returns the column of the rates of the body's states.
+    pub(super) fn column(&self) -> LoadColumn {
+        let mut sum = LoadColumn::zeros(self.parts.first().map_or(0, |part| part.unit.len()));
+        self.parts.iter().for_each(|part| sum += part.column());
+        sum
+    }
+}
+
+impl VibrationPart {
+    /// Returns the column of the rates of the body's states.
+    pub(super) fn column(&self) -> LoadColumn {
+        self.unit.map(Complex::from) * self.amplitude
+    }
+}
+
+/// Returns the column of the rates of a body's states under a unit of a component of a load at a point.
+fn unit_column(body: &ThreeAxisModel, point: &str, number: usize) -> DVector<f64> {
+    let unit = ForceEffect::unit(body, point, number);
+    let inverse = inverse_3x3(body.inertia).unwrap_or_else(Matrix3::identity);
+    let mut column = DVector::zeros(6 + 2 * body.modes.len());
+    column.rows_mut(3, 3).copy_from(&(inverse * unit.torque));
+    for mode in 0..body.modes.len() {
+        column[7 + 2 * mode] = unit.forces.get(mode).copied().unwrap_or(0.0);
+    }
+    column
 }
 
 /// Measured response of an output to a component of a load.

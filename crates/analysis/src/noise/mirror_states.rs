@@ -152,13 +152,8 @@ impl MirrorOutput {
     }
 
     /// Returns the lines of the output, with frequencies (rad/s) and complex amplitudes, for those of the line of sight before the
-    /// mirror. The last line is that of the last one at its own frequency.
-    pub fn lines(&self, before: &[ComplexLine]) -> Vec<ComplexLine> {
-        behind(&self.shares(before), before)
-    }
-
-    /// Returns the lines of the output for those before the mirror under each of some loads of one frequency.
-    pub fn all_lines(&self, before: &[Vec<ComplexLine>]) -> Vec<Vec<ComplexLine>> {
+    /// mirror under each of some loads of one frequency. The last line is that of the last one at its own frequency.
+    pub fn lines(&self, before: &[Vec<ComplexLine>]) -> Vec<Vec<ComplexLine>> {
         let shares = before.first().map_or_else(Vec::new, |first| self.shares(first));
         before.iter().map(|own| behind(&shares, own)).collect()
     }

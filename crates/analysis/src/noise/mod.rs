@@ -15,7 +15,8 @@
 //! [`Vibration`] has the motion under machines at points of the body: broadband loads as lines of small bands over frequency, and
 //! lines at the worst frequency of a machine.
 //!
-//! [`LineLoop`] has the lines of the loop under loads that turn, [`WheelImbalance`] those of wheels over their speed.
+//! [`LineSource`] has the loads of a machine or of wheels, [`LoadedLoop`] the lines of outputs under loads, [`WheelSpectrum`] those of wheels over their
+//! speed.
 //! [`NoiseReport`] has all of them for some outputs.
 
 mod broadband;
@@ -24,9 +25,10 @@ mod density;
 mod energy_circle;
 mod exposed_motion;
 mod image_contrast;
-mod imbalance;
 mod line_solver;
+mod line_source;
 mod lines;
+mod loaded_loop;
 mod measured_loads;
 pub(crate) mod mirror_states;
 mod motion;
@@ -42,28 +44,32 @@ mod source;
 mod source_motion;
 mod spectral_line;
 mod speed_grid;
-mod tones;
 mod transfer;
 mod vibration;
 mod welch;
+mod wheel_spectrum;
 mod window_rms;
 mod windows;
+mod worst_lines;
 mod worst_speed;
 
 pub use density::{OutputDensity, cumulative_rms};
 pub use energy_circle::EnergyCircle;
 pub use image_contrast::{ImageBlur, ImageFactors};
-pub use imbalance::{WheelImbalance, WheelLines, WheelSpectrum};
+pub use line_source::LineSource;
 pub use lines::{LineLoop, TurningMotion};
+pub use loaded_loop::LoadedLoop;
+pub use measured_loads::VibrationLoad;
 pub use noisy_loop::{NoiseError, NoisyLoop};
 pub use output_samples::OutputSamples;
 pub use report::{MachineLines, NoiseReport, NoiseRequest, OutputNoise};
 pub use required_contrast::{ContrastCost, ContrastPoint, RequiredContrast};
 pub use sample_times::{SamplePlace, SampleSets, SampleTimes};
 pub use source_motion::{SourceMotion, WorstTone};
-pub use spectral_line::{OutputLines, SineLoad, SpectralLine};
+pub use spectral_line::{OutputLines, SpectralLine};
 pub use vibration::Vibration;
 pub use welch::NarrowestPeak;
+pub use wheel_spectrum::{WheelLines, WheelSpectrum};
 pub use window_rms::WindowRms;
 pub use windows::{Window, WindowVariances, WindowWeights};
 pub use worst_speed::{WheelOutput, WorstSpeed};

@@ -12,7 +12,7 @@ use serde_json::Value as Json;
 use super::density::cumulative_rms;
 use super::energy_circle::EnergyCircle;
 use super::image_contrast::{ImageBlur, ImageFactors};
-use super::imbalance::{WheelImbalance, WheelSpectrum};
+use super::line_source::LineSource;
 use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, NoisyLoop};
 use super::output::output_index;
@@ -20,7 +20,8 @@ use super::required_contrast::RequiredContrast;
 use super::source_motion::SourceMotion;
 use super::spectral_line::SpectralLine;
 use super::vibration::Vibration;
-use super::window_rms::WindowRms;
+use super::wheel_spectrum::WheelSpectrum;
+use super::window_rms::{WindowRms, square_within};
 use super::windows::Window;
 use crate::fine_mirror::MirrorSensitivity;
 use flexsc_scenario::Scenario;
@@ -166,7 +167,7 @@ impl NoiseReport {
         let noisy = NoisyLoop::from_scenario(scenario)?;
         let outputs = chosen(&noisy, &request.signals)?;
         let lines = LineLoop::from_scenario(scenario)?;
-        let measure = |_: usize, lines: &[SpectralLine]| Self::measure(lines, request.window);
+        let measure = |_: usize, lines: &[SpectralLine]| square_within(lines, request.window);
         let vibration = Vibration::new(&lines, &outputs, &measure, &noisy.frequency_grid())?;
         let wheels = wheel_spectrum(scenario, request.speeds.clone(), &outputs)?;
         let wheels = match request.window {
@@ -224,14 +225,6 @@ impl NoiseReport {
             wheels.add_contrast(nyquist, &over_speed);
         }
         Ok(())
-    }
-
-    /// Returns the measure of lines that is largest at the worst frequency of a machine: within windows if there are any.
-    fn measure(lines: &[SpectralLine], window: Option<Window>) -> f64 {
-        match window {
-            Some(window) => WindowRms::from_lines(lines.iter().copied(), window).rpe_uniform,
-            None => lines.iter().map(SpectralLine::mean_square).sum(),
-        }
     }
 
     /// Adds the motion of the outputs under machines.
@@ -345,7 +338,7 @@ fn wheel_spectrum(
     speeds: Option<Vec<f64>>,
     outputs: &[usize],
 ) -> Result<Option<WheelSpectrum>, NoiseError> {
-    let Some(imbalance) = WheelImbalance::from_scenario(scenario)? else {
+    let Some(source) = LineSource::of_wheels(scenario)? else {
         return match speeds {
             Some(_) => {
                 let why = "speeds: the scenario has no `actuator.wheels.imbalance`";
@@ -367,8 +360,8 @@ fn wheel_spectrum(
     }
     let lines = LineLoop::from_scenario(scenario)?;
     let found = match speeds {
-        Some(speeds) => Some(imbalance.spectrum(&lines, &speeds, outputs)?),
-        None => imbalance.refined_spectrum(&lines, outputs)?,
+        Some(speeds) => Some(WheelSpectrum::new(&source, &lines, &speeds, outputs)?),
+        None => WheelSpectrum::refined(&source, &lines, outputs)?,
     };
     found.map(Some).ok_or_else(NoiseError::without_speed)
 }

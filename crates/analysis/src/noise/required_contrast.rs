@@ -6,11 +6,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::image_contrast::ImageBlur;
-use super::imbalance::{WheelImbalance, WheelSpectrum};
+use super::line_source::LineSource;
 use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, NoisyLoop};
 use super::spectral_line::{OutputLines, SpectralLine};
 use super::vibration::Vibration;
+use super::wheel_spectrum::WheelSpectrum;
 use crate::open_loop::{LoopBreak, LoopParts};
 
 /// Key of the imbalance of the wheels, as a source.
@@ -112,10 +113,11 @@ impl RequiredContrast {
             1.0 - ImageBlur::by_lines(required.exposure, lines.to_vec()).contrast(frequency, &[])
         };
         let vibration = Vibration::new(&lines, &outputs, &loss, &[])?;
-        let wheels = match WheelImbalance::from_scenario(parts.scenario)? {
-            Some(imbalance) => {
-                Some(imbalance.refined_spectrum(&lines, &outputs)?.ok_or_else(NoiseError::without_speed)?)
-            }
+        let source = LineSource::of_wheels(parts.scenario)?;
+        let wheels = match &source {
+            Some(source) => WheelSpectrum::refined(source, &lines, &outputs)?
+                .map(Some)
+                .ok_or_else(NoiseError::without_speed)?,
             None => None,
         };
         let fastest = wheels.as_ref().map_or(0.0, WheelSpectrum::highest_frequency);

@@ -3,17 +3,14 @@
 use nalgebra::{Complex, DVector};
 use serde::Serialize;
 
+use crate::margins::frequency_response::modulus;
+
 /// Frequency of a line (rad/s, with a sign) and its complex amplitude.
 pub type ComplexLine = (f64, Complex<f64>);
 
-/// Load on the states of the body, cosine cos w t + sine sin w t, as columns of their rate of change.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SineLoad {
-    /// Column of the cosine.
-    pub cosine: DVector<f64>,
-    /// Column of the sine.
-    pub sine: DVector<f64>,
-}
+/// Load on the states of the body, as the complex amplitude of their rate of change: its real part is that of the cosine, its
+/// imaginary part less that of the sine.
+pub type LoadColumn = DVector<Complex<f64>>;
 
 /// Sine of an output.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Serialize)]
@@ -41,6 +38,18 @@ pub struct OutputLines {
 }
 
 impl OutputLines {
+    /// Returns lines, the last of which is that of the load, multiplied by a number.
+    pub fn new(lines: Vec<ComplexLine>, by: f64) -> Self {
+        let line = |(frequency, value): (f64, Complex<f64>)| SpectralLine {
+            frequency_rad_s: frequency.abs(),
+            amplitude: by * modulus(value),
+        };
+        let mut aliases: Vec<SpectralLine> = lines.into_iter().map(line).collect();
+        let direct = aliases.pop().unwrap_or_default();
+        aliases.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
+        Self { direct, aliases }
+    }
+
     /// Returns all lines.
     pub fn all(&self) -> impl Iterator<Item = &SpectralLine> {
         self.aliases.iter().chain([&self.direct])

@@ -3,13 +3,13 @@
 use std::f64::consts::TAU;
 
 use flexsc_formats::document::ConfigError;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 
 use super::lines::LineLoop;
+use super::loaded_loop::LoadedLoop;
 use super::measured_loads::{MeasuredPart, VibrationLoad};
-use super::spectral_line::{ComplexLine, SineLoad};
+use super::spectral_line::{ComplexLine, LoadColumn};
 use crate::eigenvalues::eigenvalues;
-use crate::linear_model::Signal;
 use crate::margins::frequency_response::{FrequencyResponse, modulus};
 use crate::open_loop::{OpenLoop, TransferMatrices};
 
@@ -30,11 +30,10 @@ pub struct LoopTransfer<'a> {
     lines: &'a LineLoop<'a>,
     /// Outputs, as indices.
     outputs: &'a [usize],
-    loads: Vec<SineLoad>,
     /// Response of the angles and rates of the body alone that sensors measure to the loads.
     sensed: FrequencyResponse,
-    /// Components of loads that go by measured paths.
-    measured: MeasuredLoads,
+    /// Loop under the loads.
+    pub loaded: LoadedLoop<'a>,
     /// Resonances: frequency and half width (rad/s), of the body and then of the loop.
     pub resonances: Vec<[f64; 2]>,
     of_body: usize,
@@ -55,7 +54,7 @@ impl<'a> LoopTransfer<'a> {
     /// Creates the responses of some outputs to loads.
     ///
     /// # Errors
-    /// See [`LineLoop::lines`].
+    /// See [`LoadedLoop::new`].
     pub fn new(
         lines: &'a LineLoop<'a>,
         outputs: &'a [usize],
@@ -78,21 +77,19 @@ impl<'a> LoopTransfer<'a> {
             .map(|pole| [pole.im.abs(), pole.re.abs()]);
         let of_body: Vec<[f64; 2]> = of_body.filter(is_above).filter(is_damped).collect();
         let body = &lines.parts.body;
-        let columns: Vec<DVector<f64>> = loads.iter().map(VibrationLoad::column).collect();
-        let entry = |row: usize, load: usize| columns[load].get(row).copied().unwrap_or(0.0);
+        let columns: Vec<LoadColumn> = loads.iter().map(VibrationLoad::column).collect();
+        let entry = |row: usize, load: usize| columns[load].get(row).map_or(0.0, |entry| entry.re);
         let sensed = FrequencyResponse::new(&TransferMatrices {
             a: body.a.clone(),
             b: DMatrix::from_fn(body.a.nrows(), loads.len(), entry),
             c: body.c.clone(),
             d: DMatrix::zeros(body.c.nrows(), loads.len()),
         });
-        let load = |cosine: DVector<f64>| SineLoad { sine: &cosine * 0.0, cosine };
         Ok(Self {
             lines,
             outputs,
             sensed,
-            measured: MeasuredLoads::new(lines, outputs, loads)?,
-            loads: columns.into_iter().map(load).collect(),
+            loaded: LoadedLoop::new(lines, outputs, loads)?,
             of_body: of_body.len(),
             resonances: of_body.into_iter().chain(of_loop.filter(is_above)).collect(),
             turn,
@@ -117,7 +114,8 @@ impl<'a> LoopTransfer<'a> {
             })
         });
         let is_below = |at: f64| at > 0.0 && at <= highest;
-        let direct = self.resonances.iter().copied().chain(self.measured.resonances());
+        let direct = self.resonances.iter().copied();
+        let direct = direct.chain(self.loaded.measured().iter().flat_map(MeasuredPart::resonances));
         let direct = direct.filter(|[at, _]| is_below(*at)).collect();
         (direct, aliases.filter(|([at, _], _)| is_below(*at)).collect())
     }
@@ -133,30 +131,20 @@ impl<'a> LoopTransfer<'a> {
     /// # Errors
     /// A frequency at which a motion without damping grows without limit.
     pub fn at(&self, frequency: f64) -> Result<Vec<LoadResponse>, ConfigError> {
-        let solved = self.lines.solved(frequency, &self.loads, self.outputs)?;
+        let (lines, solved) = self.loaded.before_mirrors(frequency)?;
         let squares = self.lines.sample_squares(&solved, self.outputs);
-        let of_load = |load: usize| {
-            let of_output = |place: usize| {
-                let each = solved.turns.frequencies.iter().zip(&solved.amplitudes);
-                each.map(|(at, amplitudes)| (*at, amplitudes[(place, load)])).collect()
-            };
-            LoadResponse {
-                lines: (0..self.outputs.len()).map(of_output).collect(),
-                sampled: squares.column(load).iter().copied().collect(),
-            }
+        let of_load = |(load, lines)| {
+            let sampled = squares.column(load).iter().copied().collect();
+            LoadResponse { lines, sampled }
         };
-        let mut found: Vec<LoadResponse> = (0..self.loads.len()).map(of_load).collect();
-        self.measured.replace(self.lines, frequency, &mut found)?;
-        Ok(found)
-    }
-
-    /// Returns the lines of an output behind its mirror, if it is behind one, for those before it under each of some loads of one
-    /// frequency; the last is that of the load.
-    pub fn behind_mirror(&self, output: usize, before: Vec<Vec<ComplexLine>>) -> Vec<Vec<ComplexLine>> {
-        match self.lines.mirror(self.outputs[output]) {
-            Some(mirror) => mirror.all_lines(&before),
-            None => before,
+        let mut found: Vec<LoadResponse> = lines.into_iter().enumerate().map(of_load).collect();
+        for part in self.loaded.measured().iter().filter(|part| part.at(frequency).is_some()) {
+            // At the samples of the law all lines have one frequency.
+            let LoadResponse { lines, sampled } = &mut found[part.load.0];
+            let sum: Complex<f64> = lines[part.output].iter().map(|(_, amplitude)| amplitude).sum();
+            sampled[part.output] = sum.norm_sqr();
         }
+        Ok(found)
     }
 
     /// Returns the largest number of lines of all outputs under a load.
@@ -167,76 +155,5 @@ impl<'a> LoopTransfer<'a> {
     /// Returns true if an output is behind a mirror.
     pub fn has_mirror(&self, output: usize) -> bool {
         self.lines.mirror(self.outputs[output]).is_some()
-    }
-}
-
-/// Components of loads that go by measured paths.
-struct MeasuredLoads {
-    parts: Vec<MeasuredPart>,
-    /// Loads of one component each, and outputs, whose model is replaced.
-    alone: Vec<SineLoad>,
-    replaced: Vec<usize>,
-    /// Of each component, its load and output among these.
-    places: Vec<(usize, usize)>,
-}
-
-impl MeasuredLoads {
-    fn new(lines: &LineLoop<'_>, outputs: &[usize], loads: &[VibrationLoad]) -> Result<Self, ConfigError> {
-        let signals: Vec<&Signal> = outputs.iter().map(|output| &lines.signals[*output]).collect();
-        let parts = MeasuredPart::all(lines.parts.scenario, &signals, loads);
-        let (mut components, mut replaced, mut places) = (Vec::new(), Vec::new(), Vec::new());
-        let place = |all: &mut Vec<(usize, usize)>, own: (usize, usize)| {
-            all.iter().position(|known| *known == own).unwrap_or_else(|| {
-                all.push(own);
-                all.len() - 1
-            })
-        };
-        for part in &parts {
-            let output =
-                lines.output(&part.replaced.0).map_err(|why| ConfigError::new("line_of_sight", why))?;
-            let known = replaced.iter().position(|own| *own == output).unwrap_or_else(|| {
-                replaced.push(output);
-                replaced.len() - 1
-            });
-            places.push((place(&mut components, part.load), known));
-        }
-        let load = |(load, part): (usize, usize)| {
-            let cosine = loads[load].parts[part].column.clone();
-            SineLoad { sine: &cosine * 0.0, cosine }
-        };
-        Ok(Self { parts, alone: components.into_iter().map(load).collect(), replaced, places })
-    }
-
-    /// Returns the ends and the peaks of the paths.
-    fn resonances(&self) -> impl Iterator<Item = LoopResonance> {
-        self.parts.iter().flat_map(MeasuredPart::resonances)
-    }
-
-    /// Puts the measured paths in the place of the model at a frequency (rad/s) that they have.
-    fn replace(
-        &self,
-        lines: &LineLoop<'_>,
-        frequency: f64,
-        responses: &mut [LoadResponse],
-    ) -> Result<(), ConfigError> {
-        if self.parts.iter().all(|part| part.at(frequency).is_none()) {
-            return Ok(());
-        }
-        let model = lines.solved(frequency, &self.alone, &self.replaced)?;
-        for (part, (alone, output)) in self.parts.iter().zip(&self.places) {
-            let (Some(measured), (_, share)) = (part.at(frequency), &part.replaced) else { continue };
-            let response = &mut responses[part.load.0];
-            let own = &mut response.lines[part.output];
-            for ((_, amplitude), modelled) in own.iter_mut().zip(&model.amplitudes) {
-                *amplitude -= modelled[(*output, *alone)] * *share;
-            }
-            if let Some((_, direct)) = own.last_mut() {
-                *direct += measured * *share;
-            }
-            // At the samples of the law all lines have one frequency.
-            let sum: Complex<f64> = own.iter().map(|(_, amplitude)| amplitude).sum();
-            response.sampled[part.output] = sum.norm_sqr();
-        }
-        Ok(())
     }
 }

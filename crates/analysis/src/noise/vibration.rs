@@ -3,18 +3,16 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
-use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::inverse::inverse_3x3;
-use nalgebra::{DVector, Matrix3};
+use nalgebra::Complex;
 
 use super::broadband::{BroadbandSource, broadband};
+use super::line_source::LineSource;
 use super::lines::LineLoop;
 use super::measured_loads::VibrationLoad;
 use super::source_motion::{Measure, SourceMotion};
 use super::spectral_line::SpectralLine;
-use super::tones::{ToneSource, worst_tones};
+use super::worst_lines::worst_lines;
 use flexsc_scenario::Scenario;
 
 /// Part of the variance above which a line is among the frequencies of densities.
@@ -36,26 +34,29 @@ impl Vibration {
     /// (Hz), if there are any, and at the large lines of machines.
     ///
     /// # Errors
-    /// See [`LineLoop::lines`].
+    /// See [`LineSource::at`].
     pub fn new(
         lines: &LineLoop<'_>,
         outputs: &[usize],
         measure: Measure<'_>,
         others: &[f64],
     ) -> Result<Self, ConfigError> {
-        let Machines { keys, broadband: bands, tones, loads } = Machines::new(lines.parts.scenario);
-        let mut found = Self { sources: keys, ..Self::default() };
+        let machines = Machines::new(lines.parts.scenario);
+        let mut found = Self { sources: machines.keys(), ..Self::default() };
         if found.sources.is_empty() || outputs.is_empty() {
             return Ok(found);
         }
-        let worst = |tone| worst_tones(lines, outputs, tone, measure);
-        let tones = tones.iter().map(worst).collect::<Result<Vec<Vec<SourceMotion>>, _>>()?;
+        let worst = |source: &LineSource| {
+            worst_lines(source, lines, outputs, (&source.examined_speeds(lines, outputs)?, measure))
+        };
+        let tones = machines.lines.iter().map(worst).collect::<Result<Vec<Vec<SourceMotion>>, _>>()?;
         if !others.is_empty() {
             found.frequency_hz = others.to_vec();
             found.frequency_hz.extend(tones.iter().flatten().flat_map(large_lines));
             found.frequency_hz.sort_by(f64::total_cmp);
             found.frequency_hz.dedup();
         }
+        let Machines { broadband: bands, loads, .. } = machines;
         if !bands.is_empty() {
             let (frequency_hz, motions) = broadband(lines, outputs, &loads, bands, &found.frequency_hz)?;
             found.frequency_hz = frequency_hz;
@@ -72,10 +73,11 @@ impl Vibration {
     /// Computes the motion of some outputs of a loop under its broadband sources alone.
     ///
     /// # Errors
-    /// See [`LineLoop::lines`].
+    /// See [`LineSource::at`].
     pub fn gaussian(lines: &LineLoop<'_>, outputs: &[usize]) -> Result<Self, ConfigError> {
-        let Machines { mut keys, broadband: bands, loads, .. } = Machines::new(lines.parts.scenario);
-        keys.truncate(bands.len());
+        let machines = Machines { lines: Vec::new(), ..Machines::new(lines.parts.scenario) };
+        let keys = machines.keys();
+        let Machines { broadband: bands, loads, .. } = machines;
         let (frequency_hz, motions) = broadband(lines, outputs, &loads, bands, &[])?;
         Ok(Self { sources: keys, frequency_hz, outputs: outputs.iter().copied().zip(motions).collect() })
     }
@@ -103,60 +105,40 @@ fn large_lines(motion: &SourceMotion) -> impl Iterator<Item = f64> {
 }
 
 /// Machines of a scenario.
+#[derive(Default)]
 struct Machines<'a> {
-    /// Keys, of the broadband ones first.
-    keys: Vec<String>,
     broadband: Vec<BroadbandSource<'a>>,
-    tones: Vec<ToneSource<'a>>,
-    /// Broadband loads, each a unit of one component.
+    lines: Vec<LineSource>,
+    /// Broadband loads, each a unit of some components.
     loads: Vec<VibrationLoad>,
 }
 
 impl<'a> Machines<'a> {
     fn new(scenario: &'a Scenario) -> Self {
-        let (mut keys, mut tone_keys) = (Vec::new(), Vec::new());
-        let (mut broadband, mut tones, mut loads) = (Vec::new(), Vec::new(), Vec::new());
-        let all = scenario.model.three_axis().map_or(&[][..], |_| &scenario.disturbance[..]);
-        for (index, disturbance) in all.iter().enumerate() {
-            let Some(body) = scenario.model.three_axis() else { continue };
-            let load = |amplitudes: [f64; 6]| {
-                let column = |part| {
-                    let unit = disturbance.unit_effect(body, part);
-                    load_column(body, &unit.torque, |mode| unit.forces.get(mode).copied().unwrap_or(0.0))
-                };
-                VibrationLoad::new(disturbance.place(body), amplitudes, column)
-            };
+        let mut found = Self::default();
+        let Some(body) = scenario.model.three_axis() else { return found };
+        for (index, disturbance) in scenario.disturbance.iter().enumerate() {
+            let point = disturbance.place(body);
             if let Some(density) = &disturbance.density {
                 let sums = density.loads().into_iter().map(|parts| {
-                    loads.push(load(std::array::from_fn(|own| if parts.contains(&own) { 1.0 } else { 0.0 })));
-                    loads.len() - 1
+                    let unit = |own| Complex::from(if parts.contains(&own) { 1.0 } else { 0.0 });
+                    found.loads.push(VibrationLoad::new(body, point, std::array::from_fn(unit)));
+                    found.loads.len() - 1
                 });
-                let key = format!("disturbance[{index}].density");
-                keys.push(key.clone());
-                broadband.push(BroadbandSource { key, density, loads: sums.collect() });
+                let (key, loads) = (format!("disturbance[{index}].density"), sums.collect());
+                found.broadband.push(BroadbandSource { key, density, loads });
             }
             if let Some(lines) = &disturbance.lines {
-                let loads = lines.harmonics.iter().map(|harmonic| load(harmonic.amplitudes())).collect();
-                tones.push(ToneSource { lines, loads });
-                tone_keys.push(format!("disturbance[{index}].lines"));
+                let key = format!("disturbance[{index}].lines");
+                found.lines.push(LineSource::of_machine(key, lines, (body, point)));
             }
         }
-        keys.extend(tone_keys);
-        Self { keys, broadband, tones, loads }
+        found
     }
-}
 
-/// Returns the rates of the states of the body under a load: a torque, and the force on each of its modes.
-pub(super) fn load_column(
-    body: &ThreeAxisModel,
-    torque: &Vector,
-    force: impl Fn(usize) -> f64,
-) -> DVector<f64> {
-    let inverse = inverse_3x3(body.inertia).unwrap_or_else(Matrix3::identity);
-    let mut column = DVector::zeros(6 + 2 * body.modes.len());
-    column.rows_mut(3, 3).copy_from(&(inverse * torque));
-    for mode in 0..body.modes.len() {
-        column[7 + 2 * mode] = force(mode);
+    /// Returns the keys, of the broadband ones first.
+    fn keys(&self) -> Vec<String> {
+        let broadband = self.broadband.iter().map(|own| own.key.clone());
+        broadband.chain(self.lines.iter().map(|own| own.key.clone())).collect()
     }
-    column
 }

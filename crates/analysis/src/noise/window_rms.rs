@@ -32,6 +32,17 @@ pub struct WindowRms {
     pub pde: Option<f64>,
 }
 
+/// Returns the mean square of lines, or with a window that of their relative performance error within it.
+pub fn square_within(lines: &[SpectralLine], window: Option<Window>) -> f64 {
+    match window {
+        Some(window) => {
+            let rms = WindowRms::from_lines(lines.iter().copied(), window).rpe_uniform;
+            rms * rms
+        }
+        None => lines.iter().map(SpectralLine::mean_square).sum(),
+    }
+}
+
 impl WindowRms {
     /// Returns the rms over windows of sines whose phases are unrelated.
     pub fn from_lines(lines: impl Iterator<Item = SpectralLine>, window: Window) -> Self {

@@ -1,10 +1,12 @@
 //! Speed of unbalanced wheels at which an output moves most.
 
-use super::imbalance::WheelImbalance;
+use super::line_source::LineSource;
 use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, stable_loops};
-use super::window_rms::WindowRms;
+use super::spectral_line::SpectralLine;
+use super::window_rms::square_within;
 use super::windows::Window;
+use super::worst_lines::worst_lines;
 use flexsc_formats::document::ConfigError;
 use flexsc_scenario::Scenario;
 
@@ -34,20 +36,15 @@ impl WorstSpeed {
     pub fn from_scenario(scenario: &Scenario, output: &WheelOutput) -> Result<(Self, String), NoiseError> {
         let missing =
             || ConfigError::new("actuator.wheels.imbalance", "is missing: without it wheels have no lines");
-        let imbalance = WheelImbalance::from_scenario(scenario)?.ok_or_else(missing)?;
+        let source = LineSource::of_wheels(scenario)?.ok_or_else(missing)?;
         let lines = LineLoop::from_scenario(scenario)?;
         stable_loops(&lines.parts)?;
         let place = lines.output(&output.name).map_err(NoiseError::Request)?;
-        let found = imbalance.largest_spectrum(&lines, &[place])?.ok_or_else(NoiseError::without_speed)?;
-        let values: Vec<f64> = match output.window {
-            None => found.rms[0].clone(),
-            Some(window) => {
-                let within = found.clone().over_windows(window).windows.remove(0);
-                within.iter().map(|own: &WindowRms| own.rpe_uniform).collect()
-            }
-        };
-        let worst = values.iter().zip(&found.speed_rad_s).max_by(|a, b| a.0.total_cmp(b.0));
-        let (rms, speed_rad_s) = worst.map_or((f64::NAN, f64::NAN), |(rms, speed)| (*rms, *speed));
+        let speeds = source.examined_speeds(&lines, &[place])?;
+        let measure = |_: usize, lines: &[SpectralLine]| square_within(lines, output.window);
+        let found = worst_lines(&source, &lines, &[place], (&speeds, &measure))?.swap_remove(0);
+        let worst = found.worst.ok_or_else(NoiseError::without_speed)?;
+        let (speed_rad_s, rms) = (worst.frequency, square_within(&found.lines, output.window).sqrt());
         Ok((Self { speed_rad_s, rms }, lines.signals[place].unit.clone()))
     }
 }

@@ -91,39 +91,30 @@ impl Imbalance {
             && self.angle.for_wheel(one) == self.angle.for_wheel(other)
     }
 
-    /// Returns the harmonic lines of a wheel that is mounted at a point of a body, by default that of the imbalance.
+    /// Returns the point of a body at which a wheel shakes: where it is mounted, else that of the imbalance.
     ///
     /// # Errors
     /// A `ConfigError` with a key within the imbalance and the reason.
-    pub fn harmonic_lines(
-        &self,
-        (wheel, carrier): (usize, Option<&str>),
-        rotor: &HubRotor,
-        body: &ThreeAxisModel,
-    ) -> Result<Vec<HarmonicLine>, ConfigError> {
+    pub fn point<'a>(
+        &'a self,
+        carrier: Option<&'a str>,
+        body: &'a ThreeAxisModel,
+    ) -> Result<&'a str, ConfigError> {
         let first = body.points.first().map_or("", |point| point.name.as_str());
         let name = carrier.or(self.point.as_deref()).unwrap_or(first);
-        let Some(point) = body.point(name) else {
-            let points = body.point_names();
-            return Err(ConfigError::new(
-                "point",
-                format!("must be one of the body's points, {points}, got `{name}`"),
-            ));
-        };
+        if body.point(name).is_none() {
+            let why = format!("must be one of the body's points, {}, got `{name}`", body.point_names());
+            return Err(ConfigError::new("point", why));
+        }
+        Ok(name)
+    }
+
+    /// Returns the loads of a wheel at its point.
+    pub fn turning_loads(&self, wheel: usize, rotor: &HubRotor) -> Vec<TurningLoad> {
         let offset = self.positions.get(wheel).map_or_else(Vector::zeros, vector);
-        let shapes = body.shapes(name);
-        let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
-        let line = |order: f64, force: [Vector; 2], moment: [Vector; 2]| {
-            // Moments about the mounting point, then about the centre of mass.
+        let load = |order: f64, force: [Vector; 2], moment: [Vector; 2]| {
             let moment = [0, 1].map(|part| moment[part] + offset.cross(&force[part]));
-            let torque = [0, 1].map(|part| moment[part] + point.cross(&force[part]));
-            let beyond = |part: usize| -> Vec<f64> {
-                let effect_of = |((translation, rotation), hub): (&(Vector, Vector), &Vector)| {
-                    translation.dot(&force[part]) + rotation.dot(&moment[part]) - hub.dot(&torque[part])
-                };
-                shapes.iter().zip(hub).map(effect_of).collect()
-            };
-            HarmonicLine { order, torque, force, forces: [beyond(0), beyond(1)] }
+            TurningLoad { order, force, moment }
         };
         let (first, second) = across(&rotor.axis);
         // Coefficients of cos x and sin x in e1 cos(x + phase) + e2 sin(x + phase).
@@ -135,9 +126,9 @@ impl Imbalance {
         let plus = |a: [Vector; 2], b: [Vector; 2]| [a[0] + b[0], a[1] + b[1]];
         let (force, torque) = (self.static_.for_wheel(wheel).get(), self.dynamic.for_wheel(wheel).get());
         let (phase, angle) = (self.phase.for_wheel(wheel).get(), self.angle.for_wheel(wheel).get());
-        let mut lines = Vec::new();
+        let mut loads = Vec::new();
         if force > 0.0 || torque > 0.0 {
-            lines.push(line(1.0, times(force_at(angle), force), times(force_at(angle + phase), torque)));
+            loads.push(load(1.0, times(force_at(angle), force), times(force_at(angle + phase), torque)));
         }
         for harmonic in &self.harmonics {
             let phase = harmonic.order.get() * angle + harmonic.phase.get();
@@ -145,9 +136,38 @@ impl Imbalance {
             let across = force_at(phase);
             let along = times([rotor.axis * cos, rotor.axis * -sin], harmonic.axial.get());
             let force = plus(times(across, harmonic.force.get()), along);
-            lines.push(line(harmonic.order.get(), force, times(across, harmonic.torque.get())));
+            loads.push(load(harmonic.order.get(), force, times(across, harmonic.torque.get())));
         }
-        Ok(lines)
+        loads
+    }
+}
+
+/// Load of a wheel at its point that turns with it: Omega² (c cos k psi + s sin k psi) with the order k and the angle psi of the rotor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TurningLoad {
+    /// Order k: periods per turn.
+    pub order: f64,
+    /// Coefficients c and s of the force (kg m).
+    pub force: [Vector; 2],
+    /// Coefficients c and s of the moment about the point (kg m²).
+    pub moment: [Vector; 2],
+}
+
+impl TurningLoad {
+    /// Returns the load at a point of a body as its effect on the hub and the modes.
+    pub fn line(&self, point: &str, body: &ThreeAxisModel) -> HarmonicLine {
+        let Self { order, force, moment } = self;
+        let place = body.point(point).unwrap_or_default();
+        let torque = [0, 1].map(|part: usize| moment[part] + place.cross(&force[part]));
+        let shapes = body.shapes(point);
+        let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
+        let beyond = |part: usize| -> Vec<f64> {
+            let effect_of = |((translation, rotation), hub): (&(Vector, Vector), &Vector)| {
+                translation.dot(&force[part]) + rotation.dot(&moment[part]) - hub.dot(&torque[part])
+            };
+            shapes.iter().zip(hub).map(effect_of).collect()
+        };
+        HarmonicLine { order: *order, torque, force: *force, forces: [beyond(0), beyond(1)] }
     }
 }
 

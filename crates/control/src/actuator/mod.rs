@@ -65,7 +65,7 @@ pub use failure::{FailingComponent, Failure, FailureScope};
 pub use flywheel::{BackEmfRate, FlywheelRotor, Wheel};
 pub use friction::Friction;
 pub use ideal::Ideal;
-pub use imbalance::{Harmonic, Imbalance};
+pub use imbalance::{Harmonic, Imbalance, TurningLoad};
 pub use jet_allocation::AllocatedJets;
 pub use jets::{FiringMethod, GroupEffect, GroupPair, Jets, Thruster, ThrusterEffect, ThrusterGroups};
 pub use jets_state::{JetsState, Pulse, jet_pair};

@@ -11,6 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::failure::{ActiveFailures, FailureScope};
+use super::imbalance::TurningLoad;
 use super::per_wheel::PerWheel;
 use super::unloading::WheelUnloading;
 use super::wheel_allocation::{Allocation, AllocationCriterion};
@@ -316,29 +317,40 @@ impl Wheels {
     pub fn bearings(&self, body: &ThreeAxisModel) -> Result<Vec<Bearing>, ConfigError> {
         let carried = self.carried_rotors(body)?;
         let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
+        let loads = self.turning_loads(body)?;
         let bearing = |(wheel, rotor): (usize, HubRotor)| {
             let friction = self.friction.as_ref();
-            let lines = match &self.imbalance {
-                Some(imbalance) => {
-                    let point = self.points.as_ref().map(|points| points.for_wheel(wheel));
-                    imbalance
-                        .harmonic_lines((wheel, point.as_deref()), &rotor, body)
-                        .map_err(|fault| fault.within("imbalance"))?
-                }
-                None => Vec::new(),
-            };
-            Ok(Bearing {
+            let (point, loads) = &loads[wheel];
+            Bearing {
                 inertia: rotor.spin_inertia,
                 viscous: friction.map_or(0.0, |friction| friction.viscous.for_wheel(wheel).get()),
                 coulomb: friction.map_or(0.0, |friction| friction.coulomb.for_wheel(wheel).get()),
                 breakaway: friction.map_or(0.0, |friction| friction.breakaway_torque(wheel)),
-                lines,
+                lines: loads.iter().map(|load| load.line(point, body)).collect(),
                 tilts: carried.iter().find(|own| own.wheel == wheel).map_or_else(Vec::new, |own| {
                     own.rotations.iter().zip(hub).map(|(rotation, hub)| rotation - hub).collect()
                 }),
-            })
+            }
         };
-        self.rotors()?.into_iter().enumerate().map(bearing).collect()
+        Ok(self.rotors()?.into_iter().enumerate().map(bearing).collect())
+    }
+
+    /// Returns the loads of the imbalance of each wheel, with the point at which they act.
+    ///
+    /// # Errors
+    /// A `ConfigError` with a key within the wheels and the reason.
+    pub fn turning_loads(
+        &self,
+        body: &ThreeAxisModel,
+    ) -> Result<Vec<(String, Vec<TurningLoad>)>, ConfigError> {
+        let loads = |(wheel, rotor): (usize, &HubRotor)| {
+            let Some(imbalance) = &self.imbalance else { return Ok((String::new(), Vec::new())) };
+            let carrier = self.points.as_ref().map(|points| points.for_wheel(wheel));
+            let point =
+                imbalance.point(carrier.as_deref(), body).map_err(|fault| fault.within("imbalance"))?;
+            Ok((point.to_owned(), imbalance.turning_loads(wheel, rotor)))
+        };
+        self.rotors()?.iter().enumerate().map(loads).collect()
     }
 
     /// Returns the rotors of the wheels.
