@@ -8,6 +8,7 @@ use flexsc_export_c::{self_test, vectors};
 use flexsc_flight::ticks::Ticks;
 
 use crate::flight_exports::{EXPORTED, document, exported, hashes, is_installed, make, scenario_of, text};
+use crate::flight_rust::cargo_test;
 use crate::frozen::is_frozen;
 use crate::util::Dir;
 
@@ -330,6 +331,7 @@ fn other_forms_of_laws_replay_their_run() {
         ("together", replaced("earth-observer-lqg", "[law.state_space]", "[[target]]", together)),
         ("jets", replaced("iss-ringdown-off", "[law.phase_plane]", "[actuator.jets]", jets)),
     ];
+    let target = Dir::new();
     for (name, text) in forms {
         let dir = Dir::with(&[]);
         dir.write(&format!("{name}.toml"), text);
@@ -338,6 +340,10 @@ fn other_forms_of_laws_replay_their_run() {
         let output = make(&dir, "out", &["check", "CYCLES=1000", &hash]);
         let replays = equal_replays(&output);
         assert_eq!(replays, 2, "{name}: {}", self::text(&output));
+        std::fs::remove_dir_all(dir.path("out")).expect("a directory");
+        dir.run(&format!("export-c {name}.toml -o out --calls 1500 --as rust")).exits(0);
+        let output = cargo_test(&dir, &target.path("."));
+        assert!(output.status.success(), "{name}: {}", self::text(&output));
     }
 }
 

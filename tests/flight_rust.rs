@@ -5,8 +5,8 @@ use std::process::{Command, Output};
 
 use crate::util::Dir;
 
-/// Tests a crate in a directory, with the files of the compiler in a directory that crates share.
-fn cargo_test(dir: &Dir, target: &Path) -> Output {
+/// Tests a crate in `out` of a directory, with the files of the compiler in a directory that crates share.
+pub fn cargo_test(dir: &Dir, target: &Path) -> Output {
     Command::new(env!("CARGO"))
         .args(["test", "--offline", "--quiet"])
         .current_dir(dir.path("out"))

@@ -88,17 +88,12 @@ pub fn parameters(system: &ControlSystem) -> Vec<FlightParameter> {
         ControlSystem::Modes(modes) => add_modes(modes, &mut all),
     }
     if let Some(unit) = system.estimator() {
-        let mut add = |name: &str, about: &str, value: f64, member: &str| {
-            let running = Some(format!("estimator.history.gate.{member}"));
-            all.push(FlightParameter { name: name.to_owned(), about: about.to_owned(), value, running });
-        };
-        add(
-            "gate_nis",
-            "Largest normalised innovation squared of a measurement",
-            unit.gate.most_nis,
-            "most_nis",
-        );
-        add("gate_rate", "Largest rate of the gyro (rad/s)", unit.gate.most_rate, "most_rate");
+        let running = |member: &str| Some(format!("estimator.history.gate.{member}"));
+        let (nis, rate) = (unit.gate.most_nis, unit.gate.most_rate);
+        let about = "Largest normalised innovation squared of a measurement";
+        all.push(FlightParameter::new("gate_nis", about, nis, running("most_nis")));
+        let about = "Largest rate of the gyro (rad/s)";
+        all.push(FlightParameter::new("gate_rate", about, rate, running("most_rate")));
     }
     all.retain(|parameter| parameter.value.is_finite());
     all
@@ -117,12 +112,8 @@ fn add_laws(laws: &SampledLaws, mode: Option<&str>, state: &str, all: &mut Vec<F
                 let _ = write!(about, ", in the mode `{mode}`");
             }
             let running = Some(format!("{state}{law}.{member}"));
-            all.push(FlightParameter {
-                name: law_parameter(mode, axis, axes, member),
-                about,
-                value,
-                running,
-            });
+            let name = law_parameter(mode, axis, axes, member);
+            all.push(FlightParameter::new(&name, &about, value, running));
         }
     }
 }
@@ -130,42 +121,30 @@ fn add_laws(laws: &SampledLaws, mode: Option<&str>, state: &str, all: &mut Vec<F
 fn add_b_dot(laws: &BDotLaws, mode: Option<&str>, all: &mut Vec<FlightParameter>) {
     for axis in 0..3 {
         let [gain, moment] = b_dot_names(mode, axis);
-        let mut add = |name: String, about: &str, value: f64| {
-            all.push(FlightParameter { name, about: about.to_owned(), value, running: None });
-        };
-        add(gain, "Gain of the B-dot law (A m^2 s/T)", laws.gains[axis]);
-        add(moment, "Largest moment of the B-dot law (A m^2)", laws.limits[axis]);
+        let about = "Gain of the B-dot law (A m^2 s/T)";
+        all.push(FlightParameter::new(&gain, about, laws.gains[axis], None));
+        let about = "Largest moment of the B-dot law (A m^2)";
+        all.push(FlightParameter::new(&moment, about, laws.limits[axis], None));
     }
 }
 
 fn add_actuation(own: &Actuation, all: &mut Vec<FlightParameter>) {
-    let mut add = |name: &str, about: &str, value: f64, running: Option<&str>| {
-        let running = running.map(str::to_owned);
-        all.push(FlightParameter { name: name.to_owned(), about: about.to_owned(), value, running });
-    };
     if let Some(wheels) = &own.wheels {
-        add("wheel_torque", "Largest torque of a wheel (N m)", wheels.limit, None);
+        let about = "Largest torque of a wheel (N m)";
+        all.push(FlightParameter::new("wheel_torque", about, wheels.limit, None));
     }
-    if let Some(unit) = &own.unloading {
-        let law = &unit.law;
-        add(
-            "unload_above",
-            "Momentum above which unloading begins (N m s)",
-            law.above,
-            Some("unloading.above"),
-        );
-        add("unload_below", "Momentum below which it ends (N m s)", law.below, Some("unloading.below"));
-        if law.is_magnetic {
-            add(
-                "unload_gain",
-                "Part of the momentum removed in a second (1/s)",
-                law.gain,
-                Some("unloading.gain"),
-            );
-        } else {
-            add("unload_torque", "Largest torque of the unloading (N m)", law.most, Some("unloading.most"));
-        }
-    }
+    let Some(law) = own.unloading.as_ref().map(|unit| &unit.law) else { return };
+    let last = if law.is_magnetic {
+        ("gain", "Part of the momentum removed in a second (1/s)", law.gain, "gain")
+    } else {
+        ("torque", "Largest torque of the unloading (N m)", law.most, "most")
+    };
+    let above = ("above", "Momentum above which unloading begins (N m s)", law.above, "above");
+    let below = ("below", "Momentum below which it ends (N m s)", law.below, "below");
+    all.extend([above, below, last].map(|(name, about, value, member)| {
+        let running = Some(format!("unloading.{member}"));
+        FlightParameter::new(&format!("unload_{name}"), about, value, running)
+    }));
 }
 
 /// Returns the indices of the comparisons of numbers in the conditions of modes, with the names of their parameters: the mode,
@@ -221,12 +200,8 @@ fn add_modes(modes: &ModeSystem, all: &mut Vec<FlightParameter>) {
         {
             let _ = write!(about, " ({})", quantity.unit());
         }
-        all.push(FlightParameter {
-            name,
-            about,
-            value: compared.limit,
-            running: Some(format!("steps[{step}].limit")),
-        });
+        let running = Some(format!("steps[{step}].limit"));
+        all.push(FlightParameter::new(&name, &about, compared.limit, running));
     }
 }
 
@@ -293,6 +268,10 @@ pub fn add(glue: &mut Glue<'_>) {
 }
 
 impl FlightParameter {
+    fn new(name: &str, about: &str, value: f64, running: Option<String>) -> Self {
+        Self { name: name.to_owned(), about: about.to_owned(), value, running }
+    }
+
     /// Returns the least and the greatest value.
     fn limits(&self) -> [f64; 2] {
         let ends = [self.value / FACTOR, self.value * FACTOR];
