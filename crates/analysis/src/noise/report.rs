@@ -359,9 +359,8 @@ fn wheel_spectrum(
         }
     }
     let lines = LineLoop::from_scenario(scenario)?;
-    let found = match speeds {
-        Some(speeds) => Some(WheelSpectrum::new(&source, &lines, &speeds, outputs)?),
+    Ok(Some(match speeds {
+        Some(speeds) => WheelSpectrum::new(&source, &lines, &speeds, outputs)?,
         None => WheelSpectrum::refined(&source, &lines, outputs)?,
-    };
-    found.map(Some).ok_or_else(NoiseError::without_speed)
+    }))
 }

@@ -9,7 +9,7 @@ use super::image_contrast::ImageBlur;
 use super::line_source::LineSource;
 use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, NoisyLoop};
-use super::spectral_line::{OutputLines, SpectralLine};
+use super::spectral_line::SpectralLine;
 use super::vibration::Vibration;
 use super::wheel_spectrum::WheelSpectrum;
 use crate::open_loop::{LoopBreak, LoopParts};
@@ -113,11 +113,8 @@ impl RequiredContrast {
             1.0 - ImageBlur::by_lines(required.exposure, lines.to_vec()).contrast(frequency, &[])
         };
         let vibration = Vibration::new(&lines, &outputs, &loss, &[])?;
-        let source = LineSource::of_wheels(parts.scenario)?;
-        let wheels = match &source {
-            Some(source) => WheelSpectrum::refined(source, &lines, &outputs)?
-                .map(Some)
-                .ok_or_else(NoiseError::without_speed)?,
+        let wheels = match LineSource::of_wheels(parts.scenario)? {
+            Some(source) => Some(WheelSpectrum::refined(&source, &lines, &outputs)?),
             None => None,
         };
         let fastest = wheels.as_ref().map_or(0.0, WheelSpectrum::highest_frequency);
@@ -155,13 +152,10 @@ impl WorstBlur {
             worst.mtf = worst.blur.contrast(frequency, &[]);
             return worst;
         };
-        let each = (spectrum.lines.len() / spectrum.speed_rad_s.len().max(1)).max(1);
-        for (speed, own) in spectrum.speed_rad_s.iter().zip(spectrum.lines.chunks(each)) {
-            let lines: Vec<SpectralLine> =
-                own.iter().flat_map(|lines| OutputLines::all(&lines.outputs[place])).copied().collect();
+        for (speed, lines) in spectrum.over_speed(place) {
             let mtf = worst.blur.contrast(frequency, &lines);
             if mtf < worst.mtf {
-                (worst.mtf, worst.speed, worst.wheels) = (mtf, Some(*speed), lines);
+                (worst.mtf, worst.speed, worst.wheels) = (mtf, Some(speed), lines);
             }
         }
         worst

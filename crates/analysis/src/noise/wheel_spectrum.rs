@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::image_contrast::ImageBlur;
 use super::line_source::LineSource;
 use super::lines::LineLoop;
+use super::noisy_loop::NoiseError;
 use super::spectral_line::{OutputLines, SpectralLine};
 use super::speed_grid::ResonantSpeed;
 use super::window_rms::WindowRms;
@@ -90,16 +91,12 @@ impl WheelSpectrum {
     }
 
     /// Computes the lines of some outputs at equal steps up to the largest speed that the scenario gives, and at the peaks between
-    /// them; `None` if it gives none.
+    /// them.
     ///
     /// # Errors
-    /// See [`LineSource::at`].
-    pub fn refined(
-        source: &LineSource,
-        lines: &LineLoop<'_>,
-        outputs: &[usize],
-    ) -> Result<Option<Self>, ConfigError> {
-        let Some(steps) = source.steps() else { return Ok(None) };
+    /// See [`LineSource::at`]; a scenario that gives no largest speed.
+    pub fn refined(source: &LineSource, lines: &LineLoop<'_>, outputs: &[usize]) -> Result<Self, NoiseError> {
+        let steps = source.steps().ok_or_else(NoiseError::without_speed)?;
         let range = [steps[0], steps[steps.len() - 1]];
         let at = |speeds: &[f64]| Self::new(source, lines, speeds, outputs);
         let resonant = source.resonant_speeds(lines, outputs, (range, steps[1] - steps[0]))?;
@@ -126,7 +123,7 @@ impl WheelSpectrum {
         flanks.retain(|speed| (range[0]..range[1]).contains(speed));
         let found = own.merged(tops.selected(&risen)).merged(at(&flanks)?);
         if !source.has_whirl(lines) {
-            return Ok(Some(found));
+            return Ok(found);
         }
         // The maxima of the rms of each output between the speeds.
         let mut speeds = Vec::new();
@@ -134,22 +131,27 @@ impl WheelSpectrum {
             let rms = |speed| Ok(Self::new(source, lines, &[speed], &[*output])?.rms[0][0]);
             speeds.extend(maxima(&found.speed_rad_s, &found.rms[place], &rms)?);
         }
-        Ok(Some(found.merged(at(&speeds)?)))
+        Ok(found.merged(at(&speeds)?))
     }
 
     /// Returns the spectrum with the indices of its lines over windows: each line has its weight.
     #[must_use]
     pub fn over_windows(mut self, window: Window) -> Self {
-        let each = (self.lines.len() / self.speed_rad_s.len().max(1)).max(1);
         let index = |output: usize| {
-            let at = |own: &[WheelLines]| {
-                let lines = own.iter().flat_map(|lines| lines.outputs[output].all());
-                WindowRms::from_lines(lines.copied(), window)
-            };
-            self.lines.chunks(each).map(at).collect()
+            let at = |(_, lines): (f64, Vec<SpectralLine>)| WindowRms::from_lines(lines.into_iter(), window);
+            self.over_speed(output).map(at).collect()
         };
         self.windows = (0..self.rms.len()).map(index).collect();
         self
+    }
+
+    /// Returns all lines of an output at each speed (rad/s).
+    pub(super) fn over_speed(&self, output: usize) -> impl Iterator<Item = (f64, Vec<SpectralLine>)> {
+        let each = (self.lines.len() / self.speed_rad_s.len().max(1)).max(1);
+        let of = move |own: &[WheelLines]| {
+            own.iter().flat_map(|lines| lines.outputs[output].all()).copied().collect()
+        };
+        self.speed_rad_s.iter().copied().zip(self.lines.chunks(each).map(of))
     }
 
     /// Returns the highest frequency of all lines (rad/s).
@@ -160,15 +162,10 @@ impl WheelSpectrum {
 
     /// Adds the modulation transfer at a spatial frequency (cycles/rad) of some outputs, each with the blur of its noise.
     pub(super) fn add_contrast(&mut self, frequency: f64, outputs: &[(usize, ImageBlur)]) {
-        let each = (self.lines.len() / self.speed_rad_s.len().max(1)).max(1);
         self.mtf = vec![Vec::new(); self.rms.len()];
         for (output, blur) in outputs {
-            let at = |own: &[WheelLines]| {
-                let lines: Vec<SpectralLine> =
-                    own.iter().flat_map(|lines| lines.outputs[*output].all()).copied().collect();
-                blur.contrast(frequency, &lines)
-            };
-            self.mtf[*output] = self.lines.chunks(each).map(at).collect();
+            let contrasts = self.over_speed(*output).map(|(_, lines)| blur.contrast(frequency, &lines));
+            self.mtf[*output] = contrasts.collect();
         }
     }
 
