@@ -168,7 +168,7 @@ impl NoiseReport {
         let lines = LineLoop::from_scenario(scenario)?;
         let measure = |_: usize, lines: &[SpectralLine]| Self::measure(lines, request.window);
         let vibration = Vibration::new(&lines, &outputs, &measure, &noisy.frequency_grid())?;
-        let wheels = wheel_spectrum(scenario, request.speeds.clone(), &outputs)?;
+        let wheels = wheel_spectrum(&lines, request.speeds.clone(), &outputs)?;
         let wheels = match request.window {
             Some(window) => wheels.map(|wheels| wheels.over_windows(window)),
             None => wheels,
@@ -339,13 +339,13 @@ fn chosen(noisy: &NoisyLoop, names: &[String]) -> Result<Vec<usize>, NoiseError>
     names.iter().map(index).collect()
 }
 
-/// Returns the lines of a scenario's wheels; `None` if they have no imbalance.
+/// Returns the lines of a loop's wheels; `None` if they have no imbalance.
 fn wheel_spectrum(
-    scenario: &Scenario,
+    lines: &LineLoop<'_>,
     speeds: Option<Vec<f64>>,
     outputs: &[usize],
 ) -> Result<Option<WheelSpectrum>, NoiseError> {
-    let Some(imbalance) = WheelImbalance::from_scenario(scenario)? else {
+    let Some(imbalance) = WheelImbalance::from_scenario(lines.parts.scenario)? else {
         return match speeds {
             Some(_) => {
                 let why = "speeds: the scenario has no `actuator.wheels.imbalance`";
@@ -365,10 +365,9 @@ fn wheel_spectrum(
             return Err(NoiseError::Request(why));
         }
     }
-    let lines = LineLoop::from_scenario(scenario)?;
     let found = match speeds {
-        Some(speeds) => Some(imbalance.spectrum(&lines, &speeds, outputs)?),
-        None => imbalance.refined_spectrum(&lines, outputs)?,
+        Some(speeds) => Some(imbalance.spectrum(lines, &speeds, outputs)?),
+        None => imbalance.refined_spectrum(lines, outputs)?,
     };
     found.map(Some).ok_or_else(NoiseError::without_speed)
 }
