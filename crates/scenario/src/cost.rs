@@ -14,7 +14,7 @@ use flexsc_relay_kernel::{SWITCHINGS, shortest_window};
 use flexsc_spacecraft::load_density::LoadDensity;
 
 use super::Scenario;
-use super::pace::{PUSHES, QUIET_STEPS, STEP, SWITCHES, TURNS};
+use super::pace::{MACHINE_STEPS, PUSHES, QUIET_STEPS, STEP, SWITCHES, TURNS};
 
 /// Largest number of steps of one kind in a run; more would take days.
 pub const MOST_STEPS: f64 = 1e12;
@@ -321,10 +321,10 @@ impl Scenario {
             let span = (until - disturbance.from.get()).max(0.0);
             let mut add = |key: &str, count: f64| steps.push((format!("disturbance[{index}].{key}"), count));
             if let Some(step) = disturbance.density.as_ref().and_then(LoadDensity::step) {
-                add("density.upper", span / step.seconds());
+                add(MACHINE_STEPS[0], span / step.seconds());
             }
             if let Some(lines) = &disturbance.lines {
-                add("lines.frequency", span / lines.step().seconds());
+                add(MACHINE_STEPS[1], span / lines.step().seconds());
             }
             let rows = disturbance.rows().len();
             if rows > 0 {
