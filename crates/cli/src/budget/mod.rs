@@ -131,8 +131,7 @@ struct CampaignSetup {
     consent: Option<CostConfirmation>,
 }
 
-/// What the linear loop has of a pointing index: the rms of its noise, its sources, and the number of values after which the noise
-/// repeats.
+/// Pointing index in the linear loop: the rms of its noise, its sources, and the number of values after which the noise repeats.
 struct LinearIndex {
     noise: Option<f64>,
     sources: Option<ErrorSources>,
