@@ -67,6 +67,7 @@ fn frames_are_means_over_exposures_and_name_their_aliases() {
             "--frames 20 --exposure 0.001",
             "--exposure must have two samples of line_of_sight[0], 2 ms, got 1 ms",
         ),
+        ("--frames 1e9", "--frames: each frame must have two samples of line_of_sight[0], 2 ms, got"),
         ("--frames 0.01", "--frames must be from 1 to 1000000 in the run, got 0"),
     ] {
         dir.run(&format!("export bench.mcap {options} -o wrong.csv")).exits(2).says(&[why]);

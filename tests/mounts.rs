@@ -100,11 +100,16 @@ const RESPONSES: [(f64, [[f64; 4]; 2]); 3] = [
         ],
     ),
 ];
-/// Harmonics: order, force and torque over the square of the speed, and amplitudes (rad) about x and y at 50 Hz. Source: the same.
-const LINES: [(f64, f64, f64, [f64; 2]); 3] = [
-    (1.0, 3.6e-6, 1.2e-7, [4.871_998_408_752_5e-10, 1.428_903_020_236_5e-08]),
-    (2.0, 4.0e-7, 1.5e-8, [5.773_004_458_358_1e-09, 4.941_559_252_652_3e-10]),
-    (0.6, 2.0e-7, 0.0, [1.945_142_894_067_5e-09, 1.516_164_506_786_5e-08]),
+/// Harmonic: order, force and torque over the square of the speed, amplitudes (rad) about x and y at 50 Hz, and semi-axes of their
+/// ellipse.
+type Line = (f64, f64, f64, [f64; 2], [f64; 2]);
+
+/// Source: the same.
+#[rustfmt::skip]
+const LINES: [Line; 3] = [
+    (1.0, 3.6e-6, 1.2e-7, [4.871_998_408_752_5e-10, 1.428_903_020_236_5e-08], [1.429_096_602_198_4e-08, 4.266_590_764_978_8e-10]),
+    (2.0, 4.0e-7, 1.5e-8, [5.773_004_458_358_1e-09, 4.941_559_252_652_3e-10], [5.773_038_335_416_5e-09, 4.937_599_948_444_5e-10]),
+    (0.6, 2.0e-7, 0.0, [1.945_142_894_067_5e-09, 1.516_164_506_786_5e-08], [1.516_638_396_171_7e-08, 1.907_841_599_306_0e-09]),
 ];
 
 /// Returns the bench with its wheel on the mount, with some texts replaced.
@@ -152,8 +157,8 @@ fn load(body: &ThreeAxisModel, [force, torque]: [Vector; 2]) -> DVector<f64> {
     column
 }
 
-/// Returns the amplitudes of the line of sight about x and y under a load.
-fn seen(scenario: &Scenario, speed: f64, omega: f64, load: &DVector<Complex<f64>>) -> [f64; 2] {
+/// Returns the complex amplitudes of the line of sight about x and y under a load.
+fn seen(scenario: &Scenario, speed: f64, omega: f64, load: &DVector<Complex<f64>>) -> [Complex<f64>; 2] {
     let body = scenario.model.three_axis().expect("three axes");
     let sight = scenario.line_of_sight[0].sensitivity(body);
     let a = closed(scenario, speed).map(|entry| Complex::from(-entry));
@@ -163,7 +168,7 @@ fn seen(scenario: &Scenario, speed: f64, omega: f64, load: &DVector<Complex<f64>
     [0, 1].map(|about| {
         let rigid: Complex<f64> = (0..3).map(|axis| states[axis] * sight.rigid[(about, axis)]).sum();
         let modes = sight.modes.iter().enumerate();
-        (rigid + modes.map(|(mode, own)| states[6 + 2 * mode] * own[about]).sum::<Complex<f64>>()).norm()
+        rigid + modes.map(|(mode, own)| states[6 + 2 * mode] * own[about]).sum::<Complex<f64>>()
     })
 }
 
@@ -236,7 +241,12 @@ fn responses_to_loads_on_the_wheel() {
         for (place, own) in loads.into_iter().enumerate() {
             let found = seen(&scenario, SPEED, hertz * TAU, &load(body, own).map(Complex::from));
             for about in [0, 1] {
-                close(found[about], expected[about][place], 1e-9, &format!("{hertz} Hz, {about} {place}"));
+                close(
+                    found[about].norm(),
+                    expected[about][place],
+                    1e-9,
+                    &format!("{hertz} Hz, {about} {place}"),
+                );
             }
         }
     }
@@ -246,7 +256,7 @@ fn responses_to_loads_on_the_wheel() {
 fn lines_of_a_wheel_on_its_mount() {
     let scenario = scenario(&[]);
     let body = scenario.model.three_axis().expect("three axes");
-    for (order, force, torque, expected) in LINES {
+    for (order, force, torque, expected, axes) in LINES {
         // The force turns from x towards -z, and the torque is 90 deg behind.
         let parts = [load(body, [Vector::x(), Vector::zeros()]), load(body, [-Vector::z(), Vector::zeros()])];
         let torques =
@@ -260,8 +270,31 @@ fn lines_of_a_wheel_on_its_mount() {
             turning(&parts, force * square) + turning(&torques, torque * square) * Complex::new(0.0, -1.0);
         let found = seen(&scenario, SPEED, order * SPEED, &all);
         for about in [0, 1] {
-            close(found[about], expected[about], 1e-9, &format!("order {order} about {about}"));
+            close(found[about].norm(), expected[about], 1e-9, &format!("order {order} about {about}"));
         }
+        let turn = Complex::new(0.0, 1.0) * found[1];
+        let [forward, backward] = [(found[0] + turn).norm() / 2.0, (found[0] - turn).norm() / 2.0];
+        for (found, expected) in [forward + backward, (forward - backward).abs()].into_iter().zip(axes) {
+            close(found, expected, 1e-8, &format!("ellipse of order {order}"));
+        }
+    }
+}
+
+/// The ellipse of a harmonic by three outputs of the command: about x, y, and between.
+#[test]
+fn outputs_between_the_axes_give_the_ellipse() {
+    let scenario = scenario(&[]);
+    let imbalance = WheelImbalance::from_scenario(&scenario).expect("wheels").expect("imbalance");
+    let lines = LineLoop::from_scenario(&scenario).expect("a loop");
+    let outputs =
+        ["x", "y", "xy"].map(|axis| lines.output(&format!("line_of_sight0_{axis}")).expect("an output"));
+    let found = imbalance.lines(&lines, &[SPEED], &outputs).expect("lines");
+    let [x, y, between] = [0, 1, 2].map(|place| found[0].outputs[place].direct.amplitude.powi(2));
+    let (mean, half, shared) = ((x + y) / 2.0, (x - y) / 2.0, between - (x + y) / 2.0);
+    let axes = [mean + half.hypot(shared), mean - half.hypot(shared)].map(f64::sqrt);
+    // The loop of the reference is soft.
+    for (found, expected) in axes.into_iter().zip(LINES[0].4) {
+        close(found, expected, 1e-3, "ellipse");
     }
 }
 

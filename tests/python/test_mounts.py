@@ -1,7 +1,10 @@
 """Wheels on mounts in Python: typed parts, poles with whirl, and the worst speed over the keys of a mount."""
 
+from pathlib import Path
+
 import flexsc
 import numpy as np
+import pytest
 from flexsc.scenario import (
     Appendage,
     AttitudeLaw,
@@ -57,3 +60,21 @@ def test_the_worst_mount_has_the_least_damping() -> None:
     worst = bench().with_("uncertain", ranges).worst(signal="line_of_sight0_y", points=20)
     assert worst.keys["appendage[0].mount.damping"] == 0.02
     assert worst.value > worst.nominal
+
+
+def test_frames_of_a_camera(tmp_path: Path) -> None:
+    """A frame is the mean of the samples of its exposure, of which the first and the last count half."""
+    scenario = bench().with_({"line_of_sight[0].period": 0.001, "log.period": 0.01})
+    scenario.simulate(log="full").to_mcap(tmp_path / "run.mcap")
+    log = flexsc.read_log(tmp_path / "run.mcap")
+    frames, lines = log.frames(20.0, 0.005)
+    assert len(frames["time_s"]) == 20
+    samples = log["line_of_sight"]["axes.error_rad"].reshape(-1, 3)
+    for place in (0, 7, 19):
+        own = samples[50 * place : 50 * place + 6, 1]
+        mean = (own.sum() - (own[0] + own[-1]) / 2) / 5
+        assert abs(frames["mean_y_rad"][place] - mean) < 1e-9 * np.abs(samples[:, 1]).max()
+    assert lines
+    assert all(0 <= own["lands_at_hz"] <= 10 for own in lines)
+    with pytest.raises(ValueError, match="frames: each frame must have two samples"):
+        log.frames(1e9)

@@ -105,7 +105,7 @@ impl Frames {
         let (mut found, mut lines) = (FrameColumns::default(), Vec::new());
         let known = known_lines(&scenario, log);
         for (line, own) in samples(&topic) {
-            found.add(line, &own, (request.rate, exposure))?;
+            found.add(line, &own, (request.rate, exposure, request.exposure.is_none()))?;
             lines.extend(known.iter().filter_map(|(source, frequency)| {
                 own.line_at(line, (source, *frequency), (request.rate, exposure), known.len())
             }));
@@ -131,14 +131,16 @@ impl FrameColumns {
         &mut self,
         line: usize,
         own: &SampledLine,
-        (rate, exposure): (f64, f64),
+        (rate, exposure, is_frame): (f64, f64, bool),
     ) -> Result<(), FrameFault> {
         let (Some(first), Some(last)) = (own.times.first(), own.times.last()) else { return Ok(()) };
         let period = (last - first) / (own.times.len().max(2) - 1) as f64;
         if exposure < LEAST_PERIODS * period * (1.0 - ROUNDING) {
             let [least, got] = [LEAST_PERIODS * period, exposure].map(reader_units::time_span);
-            let why = format!("exposure must have two samples of line_of_sight[{line}], {least}, got {got}");
-            return Err(FrameFault::Request(why));
+            let why = format!("must have two samples of line_of_sight[{line}], {least}, got {got}");
+            // Without its own length the exposure is a whole frame.
+            let subject = if is_frame { "frames: each frame" } else { "exposure" };
+            return Err(FrameFault::Request(format!("{subject} {why}")));
         }
         let count = ((last - first - exposure) * rate + ROUNDING).floor() + 1.0;
         if !(1.0..=MOST_FRAMES).contains(&count) {

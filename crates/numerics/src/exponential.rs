@@ -63,11 +63,39 @@ impl SimdTask for MatrixRows<'_> {
     }
 }
 
+/// Columns of a product that are summed side by side: each sum alone would wait for its last addition.
+const COLUMNS: usize = 8;
+
 /// Multiplies square matrices stored by columns of whole registers, each sum in the order of nalgebra's.
 #[inline(always)]
 fn multiply_rows<R: LaneFloat>(kind: R, a: &[f64], b: &[f64], order: usize, into: &mut [f64]) {
     let height = order.next_multiple_of(R::LANES);
-    for column in 0..order {
+    let together = order - order % COLUMNS;
+    let mut factors = vec![[0.0; COLUMNS]; order.min(order * together)];
+    for start in (0..together).step_by(COLUMNS) {
+        for place in 0..COLUMNS {
+            for k in 0..order {
+                factors[k][place] = b[(start + place) * height + k];
+            }
+        }
+        for first in (0..height).step_by(R::LANES) {
+            let entries = kind.load(&a[first..]);
+            let mut sums = [entries; COLUMNS];
+            for place in 0..COLUMNS {
+                sums[place] = entries * factors[0][place];
+            }
+            for k in 1..order {
+                let entries = kind.load(&a[k * height + first..]);
+                for place in 0..COLUMNS {
+                    sums[place] = entries * factors[k][place] + sums[place];
+                }
+            }
+            for place in 0..COLUMNS {
+                sums[place].store(&mut into[(start + place) * height + first..]);
+            }
+        }
+    }
+    for column in together..order {
         let factors = &b[column * height..column * height + order];
         for first in (0..height).step_by(R::LANES) {
             let mut sum = kind.load(&a[first..]) * factors[0];

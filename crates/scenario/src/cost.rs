@@ -13,7 +13,7 @@ use flexsc_record::Detail;
 use flexsc_relay_kernel::{SWITCHINGS, shortest_window};
 
 use super::Scenario;
-use super::pace::{PUSHES, QUIET_STEPS, STEP, SWITCHES, TURNS};
+use super::pace::{MACHINE_STEPS, PUSHES, QUIET_STEPS, STEP, SWITCHES, TURNS};
 
 /// Largest number of steps of one kind in a run; more would take days.
 pub const MOST_STEPS: f64 = 1e12;
@@ -320,11 +320,11 @@ impl Scenario {
             let span = (until - disturbance.from.get()).max(0.0);
             let mut add = |key: &str, count: f64| steps.push((format!("disturbance[{index}].{key}"), count));
             if let Some(density) = &disturbance.density {
-                let key = if density.table.is_some() { "density.table" } else { "density.upper" };
+                let key = MACHINE_STEPS[usize::from(density.table.is_some())];
                 add(key, span / density.step().seconds());
             }
             if let Some(lines) = &disturbance.lines {
-                add("lines.frequency", span / lines.step().seconds());
+                add(MACHINE_STEPS[2], span / lines.step().seconds());
             }
             let rows = disturbance.rows().len();
             if rows > 0 {

@@ -11,6 +11,8 @@ use super::Scenario;
 pub const TURNS: &str = "duration";
 /// Key of the steps of a rotation that torques of the environment shorten.
 pub(super) const PUSHES: &str = "environment";
+/// Ends of the keys of the steps of machines, each of which has its own period.
+pub(super) const MACHINE_STEPS: [&str; 3] = ["density.upper", "density.table", "lines.frequency"];
 /// Key to which the switchings of a relay law are attributed.
 pub(super) const SWITCHES: &str = "law.relay.hysteresis";
 
@@ -37,12 +39,15 @@ const AT_REST: Pace = (6e-7, 5e-8);
 const TURNING: Pace = (1.2e-6, 5e-8);
 const TURN: Pace = (1.5e-6, 5e-8);
 /// A sample, a decision or a step of a turn in surroundings that act on the body, with appendages that are driven or bend in
-/// sunlight there, with wheels in bearings, with appendages on hinges, and under sinusoidal torques.
+/// sunlight there, with wheels in bearings, with those that whirl on mounts, with appendages on hinges, under sinusoidal torques, and
+/// under the loads of machines.
 const SURROUNDED: Pace = (3e-6, 1e-6);
 const DRIVEN: Pace = (3e-6, 3e-6);
 const BEARINGS: Pace = (1e-6, 6.5e-7);
+const WHIRL: Pace = (2e-5, 5e-6);
 const HINGES: Pace = (7e-6, 7e-6);
 const SINES: Pace = (1.5e-6, 5e-7);
+const MACHINES: Pace = (3e-6, 5e-7);
 /// Times (s) that are added to a step in surroundings: for wheels in bearings, spherical harmonics of the magnetic field (constant part,
 /// and part per square of the degree), drag, pressure of sunlight from a Sun that moves, plates on appendages that turn.
 const BEARINGS_THERE: f64 = 6e-6;
@@ -66,12 +71,14 @@ impl Scenario {
         let modes = self.mode_count() as f64;
         let takes = |(base, each): Pace| base + modes * each;
         let (mut turns, mut looks, mut events, mut windows, mut switchings) = (0.0, 0.0, 0.0_f64, 0.0, 0.0);
+        let mut machines = 0.0;
         for (key, count) in acts {
             match key {
                 _ if *key == TURNS || *key == PUSHES => turns += count,
                 _ if *key == SWITCHES => switchings += count,
                 _ if key.ends_with(".exposure") => looks += count,
                 _ if key.ends_with(".window") => windows += count,
+                _ if MACHINE_STEPS.iter().any(|name| key.ends_with(name)) => machines += count,
                 // What acts with one period acts at the same instants.
                 _ => events = events.max(*count),
             }
@@ -87,7 +94,7 @@ impl Scenario {
             });
             let allocated = cycles * ALLOCATION_S;
             let moves = match self.loaded_step() {
-                Some(stride) => (events + turns) * (takes(stride) + self.environment_seconds()),
+                Some(stride) => (events + machines + turns) * (takes(stride) + self.environment_seconds()),
                 // A step that an event ends is part of the event.
                 None if turns > 0.0 => events * takes(TURNING) + (turns - events).max(0.0) * takes(TURN),
                 None => events * takes(AT_REST),
@@ -139,8 +146,11 @@ impl Scenario {
             let is_driven = self.study.drives.is_some() || !around.thermal_forces().is_empty();
             return Some(if is_driven { DRIVEN } else { SURROUNDED });
         }
-        let bearings = (!self.study.bearings.is_empty()).then_some(BEARINGS);
+        let bearings = if self.study.carried_rotors.is_empty() { BEARINGS } else { WHIRL };
+        let bearings = (!self.study.bearings.is_empty()).then_some(bearings);
         let sines = (self.largest_sine_frequency() > 0.0).then_some(SINES);
-        bearings.into_iter().chain(sines).reduce(|one, other| (one.0 + other.0, one.1 + other.1))
+        let is_shaken = self.disturbance.iter().any(|own| own.density.is_some() || own.lines.is_some());
+        let all = bearings.into_iter().chain(sines).chain(is_shaken.then_some(MACHINES));
+        all.reduce(|one, other| (one.0 + other.0, one.1 + other.1))
     }
 }

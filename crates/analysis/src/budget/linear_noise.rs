@@ -1,6 +1,7 @@
 //! Noise of the pointing indices of a sampled error under the noise of the linear loop, exact from its covariance, and under
 //! broadband loads, by the gains of the indices on their lines.
 
+use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::AXES;
 use nalgebra::Complex;
 
@@ -14,32 +15,41 @@ const MOST_PERIODS: f64 = 1e6;
 const MOST_NUMBERS: f64 = 1e8;
 
 /// Returns the rms of the index of an error under the noise of the loop, of the norm if the error has several components;
-/// `None` if the loop has no such output, or for a window that is too long for it.
-pub fn linear_noise(noisy: &NoisyLoop, lines: &LineLoop<'_>, error: &SampledError) -> Option<f64> {
+/// `None` if the loop has no such output, or for a window that is too long for it. A scenario without machines needs no `lines`.
+///
+/// # Errors
+/// See [`Vibration::new`].
+pub fn linear_noise(
+    noisy: &NoisyLoop,
+    lines: Option<&LineLoop<'_>>,
+    error: &SampledError,
+) -> Result<Option<f64>, ConfigError> {
     let outputs: Vec<usize> = output_names(error).iter().filter_map(|name| noisy.output(name)).collect();
     if outputs.is_empty() {
-        return None;
+        return Ok(None);
     }
-    let vibration = &index_vibration(lines, &outputs, error)?;
-    let mut sum = 0.0;
-    for output in outputs {
-        let each = index_variances((noisy, vibration), output, error)?;
-        sum += each.iter().sum::<f64>() / each.len() as f64;
-    }
-    Some(f64::sqrt(sum))
+    let vibration =
+        lines.map_or_else(|| Ok(Vibration::default()), |own| index_vibration(own, &outputs, error))?;
+    let mean = |output: usize| {
+        let each = index_variances((noisy, &vibration), output, error)?;
+        Some(each.iter().sum::<f64>() / each.len() as f64)
+    };
+    Ok(outputs.into_iter().map(mean).sum::<Option<f64>>().map(f64::sqrt))
 }
 
-/// Returns the motion of outputs under machines, each of which has the worst frequency for the index of an error; `None` if the loop is
-/// not linear.
+/// Returns the motion of outputs under machines, each of which has the worst frequency for the index of an error.
+///
+/// # Errors
+/// See [`Vibration::new`].
 pub(super) fn index_vibration(
     lines: &LineLoop<'_>,
     outputs: &[usize],
     error: &SampledError,
-) -> Option<Vibration> {
+) -> Result<Vibration, ConfigError> {
     let measure = |_: usize, lines: &[SpectralLine]| {
         line_variances(lines.iter(), error).map_or(0.0, |variances| variances.iter().sum())
     };
-    Vibration::new(lines, outputs, &measure, &[]).ok()
+    Vibration::new(lines, outputs, &measure, &[])
 }
 
 /// Returns the names that the outputs of an error may have: about each axis, and of a body with one angle.

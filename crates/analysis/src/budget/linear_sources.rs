@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
+use flexsc_formats::document::ConfigError;
 use flexsc_spacecraft::axes::Axis;
 use flexsc_spacecraft::disturbance::Disturbance;
 use nalgebra::Complex;
@@ -49,8 +50,11 @@ impl<'a> DisturbedLoop<'a> {
     }
 
     /// Returns the rms of the index of an error under the noise of the loop: see [`linear_noise`].
-    pub fn noise(&self, error: &SampledError) -> Option<f64> {
-        linear_noise(&self.noisy, &self.lines, error)
+    ///
+    /// # Errors
+    /// See [`linear_noise`].
+    pub fn noise(&self, error: &SampledError) -> Result<Option<f64>, ConfigError> {
+        linear_noise(&self.noisy, Some(&self.lines), error)
     }
 
     /// Returns the loop under its noise.
@@ -58,18 +62,25 @@ impl<'a> DisturbedLoop<'a> {
         &self.noisy
     }
 
-    fn index(&'a self, error: &'a SampledError) -> Option<DisturbedIndex<'a>> {
+    fn index(&'a self, error: &'a SampledError) -> Result<Option<DisturbedIndex<'a>>, ConfigError> {
         let names = output_names(error);
         let outputs: Vec<usize> = names.iter().filter_map(|name| self.noisy.output(name)).collect();
-        let &[output] = &outputs[..] else { return None };
+        let &[output] = &outputs[..] else { return Ok(None) };
         let vibration = index_vibration(&self.lines, &[output], error)?;
-        let variances = index_variances((&self.noisy, &vibration), output, error)?;
         let tone = |line| {
             let variances = line_variances(std::iter::once(line), error)?;
             Some(variances.iter().map(|variance| f64::sqrt(2.0 * variance)).collect())
         };
-        let tones = vibration.lines(output, false).map(tone).collect::<Option<_>>()?;
-        Some(DisturbedIndex { within: self, error, output, variances, tones, responses: BTreeMap::new() })
+        let tones = vibration.lines(output, false).map(tone).collect::<Option<_>>();
+        let variances = index_variances((&self.noisy, &vibration), output, error);
+        Ok(variances.zip(tones).map(|(variances, tones)| DisturbedIndex {
+            within: self,
+            error,
+            output,
+            variances,
+            tones,
+            responses: BTreeMap::new(),
+        }))
     }
 }
 
@@ -78,32 +89,38 @@ impl<'a> DisturbedLoop<'a> {
 /// and the rms of the noise. `points` are the equally likely scenarios of an ensemble, whose loop is that of the `nominal`
 /// one if they share it. `None` for an index that the loop of a point does not have. Pulses, steady forces and the imbalance of wheels
 /// are left out; machines with lines are at their worst frequency for the index.
+///
+/// # Errors
+/// A frequency at which a motion without damping grows without limit; see [`Vibration::new`](crate::noise::Vibration::new).
 pub fn linear_sources(
     nominal: &DisturbedLoop<'_>,
     points: &[Scenario],
     share_loop: bool,
     errors: &[&SampledError],
-) -> Vec<Option<ErrorSources>> {
+) -> Result<Vec<Option<ErrorSources>>, ConfigError> {
     let mut found: Vec<Option<Vec<SourceCombination>>> = vec![Some(Vec::new()); errors.len()];
     let mut add = |indices: &mut [Option<DisturbedIndex<'_>>], scenario: &Scenario| {
         for (sum, index) in found.iter_mut().zip(indices) {
-            let own = index.as_mut().and_then(|index| index.combinations(scenario));
+            let own = index.as_mut().map(|index| index.combinations(scenario)).transpose()?;
             *sum = sum.take().zip(own).map(|(sum, own)| [sum, own].concat());
         }
+        Ok(())
     };
     if share_loop {
-        let mut indices: Vec<_> = errors.iter().map(|error| nominal.index(error)).collect();
+        let mut indices = errors.iter().map(|error| nominal.index(error)).collect::<Result<Vec<_>, _>>()?;
         for scenario in points {
-            add(&mut indices, scenario);
+            add(&mut indices, scenario)?;
         }
     } else {
         for scenario in points {
-            let Some(own) = DisturbedLoop::from_scenario(scenario) else { return vec![None; errors.len()] };
-            let mut indices: Vec<_> = errors.iter().map(|error| own.index(error)).collect();
-            add(&mut indices, scenario);
+            let Some(own) = DisturbedLoop::from_scenario(scenario) else {
+                return Ok(vec![None; errors.len()]);
+            };
+            let mut indices = errors.iter().map(|error| own.index(error)).collect::<Result<Vec<_>, _>>()?;
+            add(&mut indices, scenario)?;
         }
     }
-    found.into_iter().map(|all| all.map(ErrorSources::new)).collect()
+    Ok(found.into_iter().map(|all| all.map(ErrorSources::new)).collect())
 }
 
 /// Returns the torques among a scenario's disturbances, each with the index of its axis, without pulses.
@@ -146,11 +163,11 @@ pub fn sine_frequencies(scenario: &Scenario) -> Vec<f64> {
 
 impl DisturbedIndex<'_> {
     /// Returns the sources at each place of each set of samples under the disturbances of a scenario with this loop.
-    fn combinations(&mut self, scenario: &Scenario) -> Option<Vec<SourceCombination>> {
+    fn combinations(&mut self, scenario: &Scenario) -> Result<Vec<SourceCombination>, ConfigError> {
         let bias = self.values(0.0, &steady_torques(scenario))?;
         let sines = sine_torques(scenario);
         let sines = sines.iter().map(|(frequency, torques)| self.values(*frequency, torques));
-        let sines = sines.collect::<Option<Vec<_>>>()?;
+        let sines = sines.collect::<Result<Vec<_>, _>>()?;
         let combination = |(place, variance): (usize, &f64)| SourceCombination {
             weight: 1.0,
             bias: bias[place].re,
@@ -161,11 +178,11 @@ impl DisturbedIndex<'_> {
                 .collect(),
             noise: f64::sqrt(*variance),
         };
-        Some(self.variances.iter().enumerate().map(combination).collect())
+        Ok(self.variances.iter().enumerate().map(combination).collect())
     }
 
     /// Returns the complex values of the index at each place under torques of one frequency (rad/s) together.
-    fn values(&mut self, frequency: f64, torques: &[AxisSine]) -> Option<Vec<Complex<f64>>> {
+    fn values(&mut self, frequency: f64, torques: &[AxisSine]) -> Result<Vec<Complex<f64>>, ConfigError> {
         let mut sum = vec![Complex::ZERO; self.variances.len()];
         for (axis, amplitude, phase) in torques.iter().filter(|(_, amplitude, _)| *amplitude != 0.0) {
             // sin(w t + phase) is the real part of -j exp(j phase) exp(j w t).
@@ -173,14 +190,14 @@ impl DisturbedIndex<'_> {
             let key = (frequency.to_bits(), *axis);
             if !self.responses.contains_key(&key) {
                 let load = self.within.lines.torque(*axis);
-                let motion = self.within.lines.motion(frequency, &load).ok()?;
+                let motion = self.within.lines.motion(frequency, &load)?;
                 self.responses.insert(key, self.response(&motion));
             }
             for (sum, value) in sum.iter_mut().zip(&self.responses[&key]) {
                 *sum += value * factor;
             }
         }
-        Some(sum)
+        Ok(sum)
     }
 
     /// Returns the complex values of the index at each place under the load of a motion.

@@ -33,6 +33,8 @@ const NEAR: f64 = 2.0;
 const DIFFERENCE: f64 = 1e-6;
 /// Part of what the measurements see by all aliases of resonances, below which one has no breaks of its own.
 const SMALL: f64 = 1e-10;
+/// Mean square relative to the largest of all outputs, below which an output is moved by rounding alone.
+const STILL: f64 = 1e-24;
 /// Largest number of halvings of an interval, and of intervals.
 const HALVINGS: usize = 12;
 const MOST_INTERVALS: usize = 4000;
@@ -174,9 +176,10 @@ impl Integral<'_> {
             for interval in done.iter().chain(&found) {
                 interval.powers.iter().zip(&mut totals).for_each(|([power, _], total)| *total += power);
             }
+            let still = STILL * totals.iter().copied().fold(0.0, f64::max);
             let is_coarse = |interval: &Interval| {
                 let mut each = interval.powers.iter().zip(&totals);
-                each.any(|([_, difference], total)| *difference > DIFFERENCE * total)
+                each.any(|([_, difference], total)| *difference > DIFFERENCE * total.max(still))
             };
             let may_halve = halving < HALVINGS && done.len() + 2 * found.len() < most;
             let (coarse, fine): (Vec<_>, Vec<_>) =
@@ -209,11 +212,14 @@ impl Integral<'_> {
 
     /// Checks that the integral has converged.
     fn check(&self, intervals: &[Interval]) -> Result<(), ConfigError> {
-        for index in 0..self.outputs * self.sources.len() {
-            let sum =
-                |part: usize| intervals.iter().map(|interval| interval.powers[index][part]).sum::<f64>();
-            let [power, difference] = [sum(0), sum(1)];
-            if difference > TOLERATED * power {
+        let sum = |index: usize, part: usize| {
+            intervals.iter().map(|interval| interval.powers[index][part]).sum::<f64>()
+        };
+        let all = 0..self.outputs * self.sources.len();
+        let still = STILL * all.clone().map(|index| sum(index, 0)).fold(0.0, f64::max);
+        for index in all {
+            let [power, difference] = [sum(index, 0), sum(index, 1)];
+            if difference > TOLERATED * power.max(still) {
                 let why = format!(
                     "the mean square of an output is an integral over frequency that has not converged: two rules differ by {} % \
                      with {} intervals; has the body a motion that is hardly damped?",

@@ -5,40 +5,33 @@
 //! the start and F at the end of that period. The torques repeat but for z, so that each of their lines U at w_n moves the body by
 //! (j w_n - A)^-1 B U.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{PI, TAU};
-use std::sync::OnceLock;
 
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::reader_units::number;
-use flexsc_numerics::quadrature::nodes;
 use nalgebra::{Complex, DMatrix};
 
 use super::motion::OutputRow;
 use super::period_rows::{ForcedMotion, PeriodRows, Piece, joined};
 use super::spectral_line::LoadColumn;
-use crate::eigenvalues::eigenvalues;
-use crate::margins::frequency_response::{FrequencyResponse, modulus, real_product, unit_circle};
+use crate::margins::frequency_response::{FrequencyResponse, real_product, unit_circle};
 use crate::open_loop::attitude_rows::seconds;
-use crate::open_loop::sampling::{HeldMotion, held};
+use crate::open_loop::sampling::held;
 use crate::open_loop::{BodyMatrices, LoopParts, TransferMatrices};
 
 /// Turns over a period below which the frequency of a line is next to 0.
 const SLOW: f64 = 3e-6;
+/// Number of integrals of a motion whose frequency is next to 0: the next is 1e-14 of the first.
+const INTEGRALS: usize = 3;
 
 /// Complex amplitudes: a row for each output, axis or state, and a column for each load.
 pub type Amplitudes = DMatrix<Complex<f64>>;
-
-/// Motion of the body at the nodes of an integral over a piece: times and weights (s), and motions.
-type FlowNodes = Vec<(f64, f64, HeldMotion)>;
 
 /// Solver of a loop.
 pub struct LineSolver {
     period_rows: PeriodRows,
     body: FrequencyResponse,
     loop_over_period: FrequencyResponse,
-    /// Motion of the body during a piece of each length (fs).
-    nodes: OnceLock<BTreeMap<i64, FlowNodes>>,
 }
 
 /// Frequencies (rad/s, with a sign) of the lines over a period (s), the last that of the load.
@@ -66,7 +59,7 @@ impl LineSolver {
         let drivers: Vec<usize> = (0..parts.body.a.nrows()).collect();
         let period_rows = PeriodRows::driven(parts, &[], &drivers)?;
         let (body, whole) = (response(&parts.body.a), response(&period_rows.a));
-        Ok(Self { period_rows, body, loop_over_period: whole, nodes: OnceLock::new() })
+        Ok(Self { period_rows, body, loop_over_period: whole })
     }
 
     /// Returns the frequencies of the lines below the Nyquist frequency of the law, and last that of the load (rad/s).
@@ -161,34 +154,34 @@ impl LineSolver {
         (own, period): (f64, f64),
     ) -> Amplitudes {
         let BodyMatrices { a, b, .. } = &parts.body;
-        let all_nodes = self.nodes.get_or_init(|| {
-            let fastest = eigenvalues(a).unwrap_or_default().into_iter().map(modulus).fold(0.0, f64::max);
-            let of = |length: i64| {
-                let each = nodes(seconds(length), fastest).into_iter();
-                (length, each.map(|(time, weight)| (time, weight, held(a, b, time))).collect())
-            };
-            motion
-                .pieces
-                .iter()
-                .map(|piece| piece.length)
-                .collect::<BTreeSet<_>>()
-                .into_iter()
-                .map(of)
-                .collect()
-        });
-        let read = DMatrix::from_fn(outputs.len(), a.nrows(), |place, state| match &rows[outputs[place]] {
-            OutputRow::Body(row) => row[state],
-            OutputRow::Command(_) => 0.0,
-        });
+        let (order, count) = (a.nrows(), outputs.len());
+        // Integrals of the outputs as further states, each of the one before.
+        let mut whole = a.clone().resize(order + INTEGRALS * count, order + INTEGRALS * count, 0.0);
+        for (place, output) in outputs.iter().enumerate() {
+            if let OutputRow::Body(row) = &rows[*output] {
+                whole.view_mut((order + place, 0), (1, order)).copy_from(&row.columns(0, order));
+            }
+            for integral in 1..INTEGRALS {
+                let row = order + integral * count + place;
+                whole[(row, row - count)] = 1.0;
+            }
+        }
+        let inputs = b.clone().resize_vertically(whole.nrows(), 0.0);
         let bodies = self.held_values(motion, |piece| &piece.body);
         let torques = self.held_values(motion, |piece| &piece.torque);
-        let mut sum = Amplitudes::zeros(outputs.len(), motion.change.ncols());
+        let mut sum = Amplitudes::zeros(count, motion.change.ncols());
         for ((piece, body), torque) in motion.pieces.iter().zip(bodies).zip(torques) {
             let from = seconds(piece.from);
             let of_law = body - &motion.alone.amplitudes * unit_circle(motion.alone.frequency * from);
-            for (time, weight, (flow, forced)) in &all_nodes[&piece.length] {
-                let value = real_product(&(&read * flow), &of_law) + real_product(&(&read * forced), &torque);
-                sum += value * (unit_circle(-own * (from + time)) * (weight / period));
+            let (flow, forced) = held(&whole, &inputs, seconds(piece.length));
+            let of_states = flow.view((order, 0), (INTEGRALS * count, order)).into_owned();
+            let of_torques = forced.rows(order, INTEGRALS * count).into_owned();
+            let integrals = real_product(&of_states, &of_law) + real_product(&of_torques, &torque);
+            // The integral of exp(-j w t) y by parts: w is so small that further integrals are rounding.
+            let mut factor = unit_circle(-own * (from + seconds(piece.length))) / period;
+            for integral in 0..INTEGRALS {
+                sum += integrals.rows(integral * count, count) * factor;
+                factor *= Complex::new(0.0, own);
             }
         }
         sum

@@ -169,7 +169,7 @@ impl NoiseReport {
         let lines = LineLoop::from_scenario(scenario)?;
         let measure = |_: usize, lines: &[SpectralLine]| square_within(lines, request.window);
         let vibration = Vibration::new(&lines, &outputs, &measure, &noisy.frequency_grid())?;
-        let wheels = wheel_spectrum(scenario, request.speeds.clone(), &outputs)?;
+        let wheels = wheel_spectrum(&lines, request.speeds.clone(), &outputs)?;
         let wheels = match request.window {
             Some(window) => wheels.map(|wheels| wheels.over_windows(window)),
             None => wheels,
@@ -332,13 +332,13 @@ fn chosen(noisy: &NoisyLoop, names: &[String]) -> Result<Vec<usize>, NoiseError>
     names.iter().map(index).collect()
 }
 
-/// Returns the lines of a scenario's wheels; `None` if they have no imbalance.
+/// Returns the lines of a loop's wheels; `None` if they have no imbalance.
 fn wheel_spectrum(
-    scenario: &Scenario,
+    lines: &LineLoop<'_>,
     speeds: Option<Vec<f64>>,
     outputs: &[usize],
 ) -> Result<Option<WheelSpectrum>, NoiseError> {
-    let Some(source) = LineSource::of_wheels(scenario)? else {
+    let Some(source) = LineSource::of_wheels(lines.parts.scenario)? else {
         return match speeds {
             Some(_) => {
                 let why = "speeds: the scenario has no `actuator.wheels.imbalance`";
@@ -358,9 +358,8 @@ fn wheel_spectrum(
             return Err(NoiseError::Request(why));
         }
     }
-    let lines = LineLoop::from_scenario(scenario)?;
     Ok(Some(match speeds {
-        Some(speeds) => WheelSpectrum::new(&source, &lines, &speeds, outputs)?,
-        None => WheelSpectrum::refined(&source, &lines, outputs)?,
+        Some(speeds) => WheelSpectrum::new(&source, lines, &speeds, outputs)?,
+        None => WheelSpectrum::refined(&source, lines, outputs)?,
     }))
 }

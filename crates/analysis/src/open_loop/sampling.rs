@@ -94,10 +94,8 @@ impl SampledSystem {
 /// Transition of a state over a time, and the response to inputs that are held.
 pub type HeldMotion = (DMatrix<f64>, DMatrix<f64>);
 
-/// Largest number of motions that a thread keeps.
-const MOST_KEPT: usize = 256;
-/// Largest order of a system whose motion is kept.
-const LARGEST_KEPT: usize = 64;
+/// Largest number of numbers of the motions that a thread keeps.
+const MOST_KEPT: usize = 1_000_000;
 
 thread_local! {
     /// Latest motions, by the bits of the system and the time. A tuning forms the loop of one body with many laws.
@@ -109,13 +107,10 @@ thread_local! {
 /// The system is balanced first, by powers of 2: an exponential loses the digits by which its norm exceeds the
 /// frequencies.
 pub fn held(a: &DMatrix<f64>, b: &DMatrix<f64>, time: f64) -> HeldMotion {
-    if a.nrows() > LARGEST_KEPT {
-        return motion_over(a, b, time);
-    }
     let sizes = [a.nrows() as u64, b.ncols() as u64, time.to_bits()];
     let key: Vec<u64> = sizes.into_iter().chain(a.iter().chain(b).map(|entry| entry.to_bits())).collect();
     KEPT.with_borrow_mut(|kept| {
-        if kept.len() >= MOST_KEPT {
+        if kept.len() * key.len() >= MOST_KEPT {
             kept.clear();
         }
         kept.entry(key).or_insert_with(|| motion_over(a, b, time)).clone()

@@ -133,12 +133,16 @@ impl ScenarioMeasure {
                     }
                     Err(fault) => return Err(format!("{name}: {fault}")),
                 };
-                let lines = LineLoop::from_parts(parts.clone())
-                    .map_err(|fault| format!("{name}: `{}` {}", fault.key, fault.why))?;
-                let rms = linear_noise(&noisy, &lines, error).ok_or_else(|| {
-                    format!("{name}: the linear loop has no index of the requirement `{}`", own.name)
-                })?;
-                Ok(vec![rms])
+                let refused = |fault: ConfigError| format!("{name}: `{}` {}", fault.key, fault.why);
+                let mut machines = scenario.disturbance.iter();
+                let lines = machines
+                    .any(|own| own.density.is_some() || own.lines.is_some())
+                    .then(|| LineLoop::from_parts(parts.clone()));
+                let lines = lines.transpose().map_err(refused)?;
+                let rms = linear_noise(&noisy, lines.as_ref(), error).map_err(refused)?;
+                let missing =
+                    || format!("{name}: the linear loop has no index of the requirement `{}`", own.name);
+                Ok(vec![rms.ok_or_else(missing)?])
             }
             Self::Contrast(index) => {
                 match RequiredContrast::from_parts(parts, &scenario.study.contrasts[*index]) {

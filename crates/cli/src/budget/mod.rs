@@ -15,6 +15,7 @@ use flexsc_core::analysis::budget::{
 use flexsc_core::analysis::noise::RequiredContrast;
 use flexsc_core::campaign::{Campaign, Design, RunOutcome};
 use flexsc_core::formats::count::counted;
+use flexsc_core::formats::document::ConfigError;
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::IndexRecord;
 use flexsc_core::requirement_verdict::{RequirementRuns, RequirementVerdict};
@@ -130,6 +131,13 @@ struct CampaignSetup {
     consent: Option<CostConfirmation>,
 }
 
+/// Pointing index in the linear loop: the rms of its noise, its sources, and the number of values after which the noise repeats.
+struct LinearIndex {
+    noise: Option<f64>,
+    sources: Option<ErrorSources>,
+    cycle: usize,
+}
+
 impl CampaignSetup {
     /// Runs the campaign, calls `each` with every outcome, and computes the budgets.
     fn budgets(
@@ -168,6 +176,8 @@ impl CampaignSetup {
         if let Some(consent) = self.consent {
             consent.check(&cost)?;
         }
+        let linear =
+            self.linear_indices(campaign.scenario()).map_err(|fault| refused(&name, fault.into()))?;
         let kept = Arc::new(Mutex::new(BTreeMap::new()));
         let work = {
             let kept = Arc::clone(&kept);
@@ -202,44 +212,60 @@ impl CampaignSetup {
             Ok(())
         })?;
         let all = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
-        let budgets = self.index_budgets(campaign.scenario(), all.into_values().collect());
+        let budgets = index_budgets(campaign.scenario(), linear, all.into_values().collect());
         let verdicts = runs.finish();
         Ok(Budgets { name, runs: self.runs, indices: budgets, verdicts, contrasts, units: self.units })
     }
 
-    /// Returns the budget of each requirement on a pointing index, from the values of all requirements in each run.
-    fn index_budgets(&self, scenario: &Scenario, mut all: Vec<Vec<IndexRun>>) -> Vec<CampaignBudget> {
-        let axes = scenario.axis_count();
-        let requirements = scenario.study.requirements.iter().enumerate();
-        let indices: Vec<_> = requirements
-            .filter_map(|(place, requirement)| match &requirement.source {
-                RequirementSource::Metric(..) | RequirementSource::Formula(_) => None,
-                RequirementSource::Error(error) => Some((place, requirement, error)),
-            })
-            .collect();
-        // A loop that is not linear has the runs alone.
+    /// Returns what the linear loop has of each requirement on a pointing index; a loop that is not linear has nothing.
+    fn linear_indices(&self, scenario: &Scenario) -> Result<Vec<LinearIndex>, ConfigError> {
         let disturbed = DisturbedLoop::from_scenario(scenario);
-        let errors: Vec<_> = indices.iter().map(|(_, _, error)| *error).collect();
-        let sources = disturbed.as_ref().and_then(|disturbed| {
-            let Ensemble { points, shares_loop } =
-                Ensemble::from_scenario(scenario, &self.origin, self.runs)?;
-            Some(linear_sources(disturbed, &points, shares_loop, &errors))
+        let errors: Vec<_> = sampled_errors(scenario).map(|(_, _, error)| error).collect();
+        let ensemble = disturbed.as_ref().zip(Ensemble::from_scenario(scenario, &self.origin, self.runs));
+        let sources = ensemble.map(|(disturbed, Ensemble { points, shares_loop })| {
+            linear_sources(disturbed, &points, shares_loop, &errors)
         });
-        let mut sources = sources.unwrap_or_else(|| vec![None; errors.len()]).into_iter();
-        let noisy = disturbed.as_ref().map(DisturbedLoop::noisy);
-        let budget = |(place, requirement, error): (usize, &AssessedRequirement, &SampledError)| {
-            let runs: Vec<IndexRun> = all.iter_mut().map(|run| std::mem::take(&mut run[place])).collect();
-            let (is_signed, cycle) = (error.is_component(axes), noise_cycle(noisy, error));
-            let sources = sources.next().flatten().filter(|_| is_signed);
-            CampaignBudget {
-                linear_noise: disturbed.as_ref().and_then(|disturbed| disturbed.noise(error)),
-                linear_levels: sources.as_ref().map(ErrorSources::mixed_levels),
-                linear_sources: sources,
-                ..CampaignBudget::new(requirement.clone(), error, &runs, is_signed, cycle)
-            }
+        let sources = sources.transpose()?.unwrap_or_else(|| vec![None; errors.len()]);
+        let index = |(error, sources): (&SampledError, Option<ErrorSources>)| {
+            let noise = disturbed.as_ref().map(|disturbed| disturbed.noise(error)).transpose()?.flatten();
+            let cycle = noise_cycle(disturbed.as_ref().map(DisturbedLoop::noisy), error);
+            Ok(LinearIndex { noise, sources, cycle })
         };
-        indices.into_iter().map(budget).collect()
+        errors.into_iter().zip(sources).map(index).collect()
     }
+}
+
+/// Returns the requirements of a scenario on pointing indices, each with its place among all.
+fn sampled_errors(scenario: &Scenario) -> impl Iterator<Item = (usize, &AssessedRequirement, &SampledError)> {
+    scenario.study.requirements.iter().enumerate().filter_map(|(place, requirement)| {
+        match &requirement.source {
+            RequirementSource::Metric(..) | RequirementSource::Formula(_) => None,
+            RequirementSource::Error(error) => Some((place, requirement, error)),
+        }
+    })
+}
+
+/// Returns the budget of each requirement on a pointing index, from the values of all requirements in each run.
+fn index_budgets(
+    scenario: &Scenario,
+    linear: Vec<LinearIndex>,
+    mut all: Vec<Vec<IndexRun>>,
+) -> Vec<CampaignBudget> {
+    let axes = scenario.axis_count();
+    let budget = |((place, requirement, error), linear): (_, LinearIndex)| {
+        let (requirement, error): (&AssessedRequirement, &SampledError) = (requirement, error);
+        let runs: Vec<IndexRun> =
+            all.iter_mut().map(|run: &mut Vec<IndexRun>| std::mem::take(&mut run[place])).collect();
+        let is_signed = error.is_component(axes);
+        let sources = linear.sources.filter(|_| is_signed);
+        CampaignBudget {
+            linear_noise: linear.noise,
+            linear_levels: sources.as_ref().map(ErrorSources::mixed_levels),
+            linear_sources: sources,
+            ..CampaignBudget::new(requirement.clone(), error, &runs, is_signed, linear.cycle)
+        }
+    };
+    sampled_errors(scenario).zip(linear).map(budget).collect()
 }
 
 impl Results for Budgets {
