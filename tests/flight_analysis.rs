@@ -4,7 +4,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 
-use crate::flight_exports::{EXPORTED, WITH_MODES, document, exported, is_installed, make, text};
+use flexsc_export_c::control_system::ControlSystem;
+use flexsc_export_c::self_test::self_test;
+
+use crate::flight_exports::{
+    EXPORTED, WITH_MODES, document, exported, is_installed, make, scenario_of, text,
+};
 use crate::util::Dir;
 
 /// Returns the most instructions of each function on each board: in the run, with random inputs and with extreme ones.
@@ -19,6 +24,9 @@ fn counts(printed: &str) -> BTreeMap<String, Vec<u64>> {
     counts
 }
 
+/// Cycles of the self-test in which instructions are counted on the boards.
+const COUNTED_CYCLES: u64 = 4096;
+
 #[test]
 fn instructions_are_those_of_the_document_but_for_a_tenth() {
     if !["make", "arm-none-eabi-gcc", "qemu-system-arm"].iter().all(|command| is_installed(command)) {
@@ -30,6 +38,9 @@ fn instructions_are_those_of_the_document_but_for_a_tenth() {
         let printed = text(&make(&dir, "out", &["instructions"]));
         assert_eq!(printed.matches("a loop of 2000 instructions: 2000 counted").count(), 2, "{printed}");
         assert_eq!(printed.matches("calls equal").count(), 2, "{printed}");
+        let system = ControlSystem::new(&scenario_of(name)).expect("an exportable scenario");
+        let hash = format!("\n{:016x}\n", self_test(&system, COUNTED_CYCLES));
+        assert_eq!(printed.matches(&hash).count(), 2, "{hash}{printed}");
         let counts = counts(&printed);
         let rows = document.lines().filter(|line| line.starts_with(&format!("| `{name}`, `")));
         assert_eq!(rows.count(), counts.len(), "{name}: {counts:?}");

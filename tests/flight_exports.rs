@@ -34,14 +34,7 @@ type Files = Vec<(String, Vec<u8>)>;
 /// Returns a directory with the file of an exported scenario, and the arguments of its export.
 fn prepared(exported: &str) -> (Dir, String) {
     let (name, mode) = exported.split_once(' ').unwrap_or((exported, ""));
-    let dir = Dir::with(&[name]);
-    if mode.starts_with("--mode") {
-        // B-dot laws read no attitude.
-        let watched = "[estimator.attitude]\nwatch_only = true\n";
-        let text = dir.text(&format!("{name}.toml")).replace("[estimator.attitude]\n", watched);
-        dir.write(&format!("{name}.toml"), text);
-    }
-    (dir, format!("{name}.toml {mode}"))
+    (Dir::with(&[name]), format!("{name}.toml {mode}"))
 }
 
 /// Returns an exported scenario, in the mode that is exported.

@@ -105,7 +105,7 @@ fn conversion(kind: &str, path: &str, members: &[String], twins: &mut String) {
     };
     let _ = writeln!(
         twins,
-        "impl Twin for flexsc_flight::{path} {{\n    type Single = crate::{path};\n\n    fn single(&self) -> Self::Single {{\n        {to}\n    }}\n\n    \
-         fn double(single: &Self::Single) -> Self {{\n        {from}\n    }}\n}}\n"
+        "impl Twin for flexsc_flight::{path} {{\n    type Single = crate::{path};\n\n    #[inline]\n    fn single(&self) -> Self::Single {{\n        {to}\n    }}\n\n    \
+         #[inline]\n    fn double(single: &Self::Single) -> Self {{\n        {from}\n    }}\n}}\n"
     );
 }

@@ -16,7 +16,7 @@ macro_rules! sources {
 }
 
 /// Number of files.
-const COUNT: usize = 52;
+const COUNT: usize = 54;
 
 /// Returns the source files of the flight code in a precision.
 pub fn sources_in(precision: Precision) -> Vec<SourceFile<'static>> {
@@ -45,6 +45,7 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "biquad",
         "compensator",
         "covariance_propagation",
+        "delayed_observation",
         "error_measure",
         "exponentials",
         "filter_lock",
@@ -70,6 +71,7 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "pulse_timing",
         "pulse_width",
         "quaternion",
+        "reading_judgement",
         "reading_status",
         "relay",
         "rigid_rate",

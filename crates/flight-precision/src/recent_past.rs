@@ -3,13 +3,15 @@
 use std::ops::Range;
 
 use flexsc_flight::attitude_estimator::AttitudeEstimator;
-use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
+use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry};
 use flexsc_flight::attitude_observation::{AttitudeObservation, Correction};
+use flexsc_flight::delayed_observation::DelayedObservation;
 use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
 
-use crate::attitude_history::{AttitudeHistoryEntry as SingleEntry, DelayedObservation as SingleObservation};
+use crate::attitude_history::AttitudeHistoryEntry as SingleEntry;
+use crate::delayed_observation::DelayedObservation as SingleObservation;
 use crate::precision::Precision;
 use crate::twin::{Twin, changed};
 

@@ -12,13 +12,16 @@ pub trait Twin {
     fn double(single: &Self::Single) -> Self;
 }
 
+// Conversions are inlined where whole states are converted.
 impl Twin for f64 {
     type Single = f32;
 
+    #[inline]
     fn single(&self) -> f32 {
         *self as f32
     }
 
+    #[inline]
     fn double(single: &f32) -> Self {
         Self::from(*single)
     }
@@ -30,10 +33,12 @@ macro_rules! same {
         $(impl Twin for $kind {
             type Single = Self;
 
+            #[inline]
             fn single(&self) -> Self {
                 *self
             }
 
+            #[inline]
             fn double(single: &Self) -> Self {
                 *single
             }
@@ -46,10 +51,12 @@ same!(bool, i32, i64, u32, u64, usize);
 impl<T: Twin, const N: usize> Twin for [T; N] {
     type Single = [T::Single; N];
 
+    #[inline]
     fn single(&self) -> Self::Single {
         self.each_ref().map(T::single)
     }
 
+    #[inline]
     fn double(single: &Self::Single) -> Self {
         single.each_ref().map(T::double)
     }

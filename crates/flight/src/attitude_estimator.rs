@@ -2,8 +2,9 @@
 
 use crate::attitude_filter::{AttitudeBiasFilter, GyroNoise};
 use crate::attitude_gate::AttitudeGate;
-use crate::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
+use crate::attitude_history::{AttitudeHistory, AttitudeHistoryEntry};
 use crate::attitude_observation::{AttitudeObservation, Correction};
+use crate::delayed_observation::DelayedObservation;
 use crate::quaternion::Quaternion;
 use crate::reading_status::ReadingStatus;
 use crate::square_root::sqrt;

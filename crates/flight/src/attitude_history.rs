@@ -2,21 +2,18 @@
 //!
 //! Each entry holds the filter after the events at its instant, with the gyro reading of the interval that ends there.
 //! A delayed measurement is inserted at its exposure, and all later steps are repeated: the result is that of a filter
-//! without delays. The caller gives the storage of entries and measurements, the same at every call. Measurements are judged once,
-//! when they first correct: one that was accepted is accepted in every repetition.
+//! without delays. The caller gives the storage of entries and measurements, the same at every call. Measurements are judged once
+//! (`reading_judgement.rs`), when they first correct: one that was accepted is accepted in every repetition.
 
 use crate::attitude_filter::{AttitudeBiasFilter, GyroNoise};
 use crate::attitude_gate::AttitudeGate;
-use crate::attitude_observation::{AttitudeObservation, Correction};
+use crate::attitude_observation::Correction;
 use crate::binary64::infinity;
+use crate::delayed_observation::DelayedObservation;
 use crate::maths::min;
 use crate::reading_status::ReadingStatus;
 use crate::ticks::Ticks;
 use crate::vector3::Vector3;
-
-/// Largest ratio of the variance of an accepted measurement to that of the refused ones before it, at which it shows that they were
-/// false: twice the standard deviation.
-const MOST_VARIANCE_RATIO: f64 = 4.0;
 
 /// Number of counters of refused readings.
 pub const REFUSAL_COUNTERS: usize = 8;
@@ -36,40 +33,6 @@ impl AttitudeHistoryEntry {
     /// Empty entry, which fills storage.
     pub const NONE: Self =
         Self { time: Ticks { whole: 0, part: 0 }, reading: Vector3::ZERO, filter: AttitudeBiasFilter::NONE };
-}
-
-/// Measurement of the attitude or a vector with the time of its exposure.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct DelayedObservation {
-    /// Number of the sensor, of those that have a counter of refused readings; 0 is the gyro.
-    pub sensor: usize,
-    /// Time of the exposure.
-    pub exposed: Ticks,
-    /// Measured attitude or vector.
-    pub observation: AttitudeObservation,
-    /// Variance by which that of the attitude is inflated before the correction (rad²); 0 for most measurements.
-    pub angle_inflation: f64,
-    /// Variance by which that of the bias is inflated (rad²/s²).
-    pub bias_inflation: f64,
-}
-
-impl DelayedObservation {
-    /// Empty measurement, which fills storage.
-    pub const NONE: Self = Self {
-        sensor: 0,
-        exposed: Ticks { whole: 0, part: 0 },
-        observation: AttitudeObservation::NONE,
-        angle_inflation: 0.0,
-        bias_inflation: 0.0,
-    };
-
-    /// Corrects a filter, if the normalised innovation squared is at most `most_nis`.
-    fn correct(&self, filter: &mut AttitudeBiasFilter, most_nis: f64) -> Correction {
-        if self.angle_inflation > 0.0 {
-            filter.inflate(self.angle_inflation, self.bias_inflation);
-        }
-        filter.observe(&self.observation, most_nis)
-    }
 }
 
 /// Counts of the entries and measurements of an attitude filter's recent past.
@@ -141,21 +104,6 @@ impl AttitudeHistory {
         }
     }
 
-    /// Returns the number of readings of all sensors refused since the start.
-    pub fn refusals(&self) -> u64 {
-        let mut sum: u64 = 0;
-        for sensor in 0..REFUSAL_COUNTERS {
-            sum += self.refused[sensor];
-        }
-        sum
-    }
-
-    /// Counts a refused reading of a sensor.
-    fn count_refusal(&mut self, sensor: usize) {
-        let counter: usize = if sensor < REFUSAL_COUNTERS { sensor } else { REFUSAL_COUNTERS - 1 };
-        self.refused[counter] += 1;
-    }
-
     /// Returns true if the storage holds the history.
     #[inline]
     fn is_held(&self, entries: &[AttitudeHistoryEntry], observations: &[DelayedObservation]) -> bool {
@@ -168,44 +116,6 @@ impl AttitudeHistory {
     #[inline]
     pub fn latest(&self) -> usize {
         self.first + self.entries - 1
-    }
-
-    /// Judges a gyro reading (rad/s) of an interval that ends at `now`, before it is added. After several readings in a row that are
-    /// older than the last one, the clock was set back: the history begins again at `now`, with the latest filter.
-    pub fn judge_gyro(
-        &mut self,
-        now: Ticks,
-        reading: &Vector3,
-        entries: &mut [AttitudeHistoryEntry],
-    ) -> ReadingStatus {
-        if self.entries == 0 || self.first + self.entries > entries.len() {
-            return ReadingStatus::Untimely;
-        }
-        if !self.gate.is_sound_rate(reading) {
-            self.count_refusal(0);
-            return ReadingStatus::Unsound;
-        }
-        if !now.is_before(entries[self.latest()].time) {
-            self.setbacks = 0;
-            return ReadingStatus::Accepted;
-        }
-        self.setbacks += 1;
-        if self.setbacks <= self.gate.most_refusals {
-            self.count_refusal(0);
-            return ReadingStatus::Untimely;
-        }
-        entries[0] = entries[self.latest()];
-        entries[0].time = now;
-        self.first = 0;
-        self.entries = 1;
-        self.applied = 0;
-        self.waiting = 0;
-        self.setbacks = 0;
-        // The rotation since the last reading is not known.
-        self.is_unsure = true;
-        self.corrected = now;
-        self.confirmed = now;
-        ReadingStatus::Accepted
     }
 
     /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the last correction by a measurement that
@@ -379,27 +289,6 @@ impl AttitudeHistory {
             self.waiting -= 1;
         }
         correction
-    }
-
-    /// Returns true if an improbable measurement is accepted all the same: after several in a row, after a gap, or after the clock was
-    /// set back.
-    fn is_reaccepted(&self, observation: &DelayedObservation) -> bool {
-        self.is_unsure
-            || self.improbable >= self.gate.most_refusals
-            || self.gate.gap.is_before(observation.exposed.since(self.confirmed))
-    }
-
-    /// Counts an improbable measurement with a variance (rad²).
-    fn count_improbable(&mut self, variance: f64) {
-        if self.improbable == 0 || variance < self.least_variance {
-            self.least_variance = variance;
-        }
-        self.improbable += 1;
-    }
-
-    /// Returns true if a measurement that corrects the filter ends the row of improbable ones: it is about as accurate.
-    fn ends_row(&self, observation: &AttitudeObservation) -> bool {
-        self.improbable == 0 || observation.angle_variance() <= MOST_VARIANCE_RATIO * self.least_variance
     }
 
     /// Corrects the filter at the exposure of a measurement, for which it inserts an entry if there is none.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use flexsc_control::actuator::AssignedActuator;
+use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::law::Stage;
 use flexsc_control::operation::ModeTarget;
 use flexsc_formats::document::{ConfigError, ScenarioError};
@@ -11,7 +12,7 @@ use super::{Scenario, ScenarioSpec};
 
 impl Scenario {
     /// Returns the scenario in which one of the modes acts throughout: with its law, target, sensors and actuators. Of a law with
-    /// stages it is that of the stage with this index.
+    /// stages it is that of the stage with this index. An attitude filter that the law does not read goes on unread.
     ///
     /// # Errors
     /// Fails without a mode of this name, and if the parts of the mode are inconsistent without the others.
@@ -38,6 +39,7 @@ impl Scenario {
                 |_: usize, of: &AssignedActuator| of.unloads.is_some() || stage.selects(of.kind.kind());
             written.actuator.retain(acts);
             written.law = stage.law;
+            written.leave_filter_unread();
             written.uncertain.clear();
             written.correlated.clear();
         })
@@ -95,6 +97,7 @@ impl ScenarioSpec {
         let own = self.guidance(&mode.name).or_else(|| self.guidance("")).cloned();
         self.own_guidance = own.map(|own| (String::new(), own)).into_iter().collect();
         self.law = mode.law;
+        self.leave_filter_unread();
         self.mode.clear();
         self.mode_targets.clear();
         self.keep_uncertain(&format!("mode[{index}].law."), "mode[", &in_use);
@@ -105,7 +108,16 @@ impl ScenarioSpec {
         let stage = self.law.stages()[index].clone();
         self.actuator.retain(|_, of| of.unloads.is_some() || stage.selects(of.kind.kind()));
         self.law = stage.law;
+        self.leave_filter_unread();
         self.keep_uncertain(&format!("law.stages[{index}].law."), "law.stages[", &[]);
+    }
+
+    /// Marks an attitude filter as unread if the law reads no estimates of the motion.
+    fn leave_filter_unread(&mut self) {
+        let is_read = (0..3).any(|axis| self.law.about(axis).offers().reads_motion());
+        if let Some(EstimatorKind::Attitude(filter)) = &mut self.estimator {
+            filter.watch_only |= !is_read;
+        }
     }
 
     /// Renames the uncertain keys of the law of a mode or stage, and leaves out those of others, and of sensors and actuators

@@ -1,6 +1,5 @@
 //! Laws of the modes or stages of a control system.
 
-use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_core::control::law::LawKind;
 use flexsc_core::{Scenario, ScenarioError};
 
@@ -86,8 +85,7 @@ pub(super) fn laws_of_mode(
         }
         Some(_) => {}
     }
-    let reads_motion = written.is_some_and(|law| law.offers().reads_motion());
-    let alone = alone(scenario, index, has_modes, reads_motion);
+    let alone = alone(scenario, index, has_modes);
     let alone = alone.map_err(|error| NotExportable::new("law", format!("cannot act alone: {error}")))?;
     let laws: Vec<&LawKind> = (0..alone.study.axes.len()).map(|axis| alone.law.about(axis)).collect();
     let mut laws = SampledLaws::new(&alone, &laws)?;
@@ -99,20 +97,9 @@ pub(super) fn laws_of_mode(
     Ok(ModeLaws::OnEstimates(Box::new(laws)))
 }
 
-/// Returns the scenario in which a mode or stage acts throughout, without requirements, which may name other modes. A filter that its
-/// law does not read goes on unread.
-fn alone(
-    scenario: &Scenario,
-    index: usize,
-    has_modes: bool,
-    reads_motion: bool,
-) -> Result<Scenario, ScenarioError> {
-    let whole = scenario.clone().with(|written| {
-        written.requirement.clear();
-        if let Some(EstimatorKind::Attitude(filter)) = &mut written.estimator {
-            filter.watch_only |= !reads_motion;
-        }
-    })?;
+/// Returns the scenario in which a mode or stage acts throughout, without requirements, which may name other modes.
+fn alone(scenario: &Scenario, index: usize, has_modes: bool) -> Result<Scenario, ScenarioError> {
+    let whole = scenario.clone().with(|written| written.requirement.clear())?;
     match scenario.mode.get(index).filter(|_| has_modes) {
         Some(mode) => whole.in_mode(&mode.name),
         None => whole.in_stage(index),

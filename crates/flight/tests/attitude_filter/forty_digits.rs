@@ -2,8 +2,9 @@
 
 use flexsc_flight::attitude_filter::{AttitudeBiasFilter, GyroNoise};
 use flexsc_flight::attitude_gate::AttitudeGate;
-use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
+use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry};
 use flexsc_flight::attitude_observation::{AttitudeObservation, Correction};
+use flexsc_flight::delayed_observation::DelayedObservation;
 use flexsc_flight::matrix3::Matrix3;
 use flexsc_flight::quaternion::Quaternion;
 use flexsc_flight::ticks::Ticks;

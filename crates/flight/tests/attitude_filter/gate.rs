@@ -3,8 +3,9 @@
 use flexsc_flight::attitude_estimator::AttitudeEstimator;
 use flexsc_flight::attitude_filter::AttitudeBiasFilter;
 use flexsc_flight::attitude_gate::AttitudeGate;
-use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
+use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry};
 use flexsc_flight::attitude_observation::{AttitudeObservation, ObservationKind};
+use flexsc_flight::delayed_observation::DelayedObservation;
 use flexsc_flight::matrix3::Matrix3;
 use flexsc_flight::quaternion::Quaternion;
 use flexsc_flight::reading_status::ReadingStatus;

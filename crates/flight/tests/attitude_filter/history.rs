@@ -1,6 +1,7 @@
 //! Recent past of the attitude filter: delayed and early measurements, and storage that is full.
 
-use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
+use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry};
+use flexsc_flight::delayed_observation::DelayedObservation;
 use flexsc_flight::ticks::Ticks;
 
 use crate::forty_digits::{GATE, NOISE, apart, at, first, fix, readings, replay, vector};

@@ -2,8 +2,9 @@
 
 use flexsc_flight::attitude_filter::GyroNoise;
 use flexsc_flight::attitude_gate::AttitudeGate;
-use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
+use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry};
 use flexsc_flight::attitude_observation::Correction;
+use flexsc_flight::delayed_observation::DelayedObservation;
 use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_flight_precision::Precision;
 use flexsc_numerics::attitude::{Vector, rotation};

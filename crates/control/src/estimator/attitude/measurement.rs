@@ -1,7 +1,7 @@
 //! Inputs of an attitude filter: the measurements that correct an attitude.
 
-use flexsc_flight::attitude_history::DelayedObservation;
 use flexsc_flight::attitude_observation::{self, AttitudeObservation, ObservationKind};
+use flexsc_flight::delayed_observation::DelayedObservation;
 use flexsc_flight::matrix6::Matrix6x3 as FlightGain;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::flight_types::{to_matrix3, to_matrix6x3, to_quaternion, to_vector3};
