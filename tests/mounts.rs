@@ -284,13 +284,14 @@ fn lines_of_a_wheel_on_its_mount() {
 #[test]
 fn outputs_between_the_axes_give_the_ellipse() {
     let scenario = scenario(&[]);
-    let imbalance = WheelImbalance::from_scenario(&scenario).expect("wheels").expect("imbalance");
+    let source = LineSource::of_wheels(&scenario).expect("wheels").expect("imbalance");
     let lines = LineLoop::from_scenario(&scenario).expect("a loop");
     let outputs =
         ["x", "y", "xy"].map(|axis| lines.output(&format!("line_of_sight0_{axis}")).expect("an output"));
-    let found = imbalance.lines(&lines, &[SPEED], &outputs).expect("lines");
-    let [x, y, between] = [0, 1, 2].map(|place| found[0].outputs[place].direct.amplitude.powi(2));
-    let (mean, half, shared) = ((x + y) / 2.0, (x - y) / 2.0, between - (x + y) / 2.0);
+    let found = WheelSpectrum::new(&source, &lines, &[SPEED], &outputs).expect("lines");
+    let [x, y, between] = [0, 1, 2].map(|place| found.lines[0].outputs[place].direct.amplitude.powi(2));
+    let mean = x.midpoint(y);
+    let (half, shared) = ((x - y) / 2.0, between - mean);
     let axes = [mean + half.hypot(shared), mean - half.hypot(shared)].map(f64::sqrt);
     // The loop of the reference is soft.
     for (found, expected) in axes.into_iter().zip(LINES[0].4) {

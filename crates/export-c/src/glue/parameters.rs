@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use flexsc_core::control::operation::ModeReading;
 use flexsc_core::numerics::attitude::AXES;
 use flexsc_flight::mode_condition::{ConditionSource, ConditionStep};
+use flexsc_flight_precision::Precision;
 
 use super::Glue;
 use super::member::Member;
@@ -224,7 +225,7 @@ pub fn add(glue: &mut Glue<'_>) {
     );
     let about = "Numbers that are tuned in flight.";
     glue.members.push(Member::new(about, "parameters", "Parameters", "DEFAULT_PARAMETERS".to_owned()));
-    let limits: Vec<[f64; 2]> = all.iter().map(FlightParameter::limits).collect();
+    let limits: Vec<[f64; 2]> = all.iter().map(|own| own.limits(glue.plan.precision)).collect();
     let about = format!(
         "Least and greatest value of each parameter: a factor of {FACTOR} from its default, which a team narrows."
     );
@@ -272,9 +273,10 @@ impl FlightParameter {
         Self { name: name.to_owned(), about: about.to_owned(), value, running }
     }
 
-    /// Returns the least and the greatest value.
-    fn limits(&self) -> [f64; 2] {
-        let ends = [self.value / FACTOR, self.value * FACTOR];
+    /// Returns the least and the greatest value, which are finite in the precision of the code.
+    fn limits(&self, precision: Precision) -> [f64; 2] {
+        let most = if precision.is_double() { f64::MAX } else { f64::from(f32::MAX) };
+        let ends = [self.value / FACTOR, (self.value * FACTOR).clamp(-most, most)];
         match self.value {
             0.0 => [-1.0, 1.0],
             value if value < 0.0 => [ends[1], ends[0]],

@@ -66,22 +66,34 @@ fn flight_file(file: &SourceFile<'_>) -> String {
     )
 }
 
-/// Returns the files of the flight code that a text needs, directly or by others.
+/// Returns the files of the flight code that a text needs, directly or by others: those that it names, and those with methods of their
+/// types.
 fn needed_modules<'a>(sources: &[SourceFile<'a>], text: &str) -> Vec<SourceFile<'a>> {
     let mut found = BTreeSet::new();
     let mut texts = vec![text];
     while let Some(text) = texts.pop() {
-        for path in text.split("crate::").skip(1) {
-            let end = path.find(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_');
-            let name = &path[..end.unwrap_or(path.len())];
-            if let Some(source) = sources.iter().find(|source| source.module == name)
-                && found.insert(source.module)
-            {
+        let names = text.split("crate::").skip(1).map(first_name);
+        let types = ["\npub struct ", "\npub enum "]
+            .into_iter()
+            .flat_map(|kind| text.split(kind).skip(1))
+            .map(first_name);
+        let named = names.filter_map(|name| sources.iter().find(|source| source.module == name));
+        let methods = types.flat_map(|name| {
+            sources.iter().filter(move |own| own.text.contains(&format!("\nimpl {name} {{")))
+        });
+        for source in named.chain(methods).collect::<Vec<_>>() {
+            if found.insert(source.module) {
                 texts.push(without_tests(source));
             }
         }
     }
     sources.iter().filter(|source| found.contains(source.module)).copied().collect()
+}
+
+/// Returns the name at the start of a text.
+fn first_name(text: &str) -> &str {
+    let end = text.find(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_');
+    &text[..end.unwrap_or(text.len())]
 }
 
 fn manifest(plan: &Plan<'_>) -> String {
