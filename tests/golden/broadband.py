@@ -71,7 +71,7 @@ def hub_law():
 
 
 def deviations(period, exposure, parts=None):
-    """The rms about x and y at the samples, over time, of the means over exposures, and of the straight lines.
+    """The rms about x and y at the samples, over time, of means over exposures, and of straight lines.
 
     `parts`: rates, noise, torques, line of sight and the gain of the law, by default those of the bolted
     bench.
@@ -312,15 +312,18 @@ if __name__ == "__main__":
     print("variance of the load", variance_of_load())
     for period in (0.001, 0.01):
         print(period, "s: at samples, over time, means over 20 ms", deviations(period, 0.02))
-    # The last line is an integral over frequency by Gauss's rule of 12 nodes in 245 and in 379 intervals that the poles
-    # grade, equal to 12 digits; 1.62842083e-8 and 1.67331416e-8 are published, of a covariance.
+    # The last line is an integral over frequency by Gauss's rule of 12 nodes in 245 and in 379 intervals
+    # that the poles grade, equal to 12 digits; 1.62842083e-8 and 1.67331416e-8 are published, of a covariance.
     published = [[6.331786872e-8, 6.739483245e-8], [1.628420930653e-8, 1.673314563969e-8]]
     np.testing.assert_allclose(behind_mirror(0, held=True), published, rtol=1e-8)
     for period in (0.01, 0.001):
         print("on the mount, before and behind the mirror, law at", period, "s:", behind_mirror(period))
     # Means, what is left of them, and straight lines over an exposure: published, and with the law at 1 kHz.
     for exposure, published in [
-        (0.02, [6.084687896e-8, 6.489090236e-8, 1.751598768e-8, 1.819983944e-8, 1.669027316e-8, 1.734886398e-8]),
+        (
+            0.02,
+            [6.084687896e-8, 6.489090236e-8, 1.751598768e-8, 1.819983944e-8, 1.669027316e-8, 1.734886398e-8],
+        ),
         (0.004, [6.320227947e-8, 6.727683672e-8, 3.82418245e-9, 3.98630886e-9]),
     ]:
         *open_loop, gain = mounted(False, held=True)

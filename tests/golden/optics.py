@@ -147,7 +147,7 @@ LINES = [(1.0, 3.6e-6, 1.2e-7), (2.0, 4.0e-7, 1.5e-8), (0.6, 2.0e-7, 0.0)]
 
 def ellipse(amplitudes):
     """The semi-axes of the motion about x and y, from complex amplitudes."""
-    forward, backward = abs(amplitudes[0] + 1j * amplitudes[1]) / 2, abs(amplitudes[0] - 1j * amplitudes[1]) / 2
+    forward, backward = (abs(amplitudes[0] + sign * amplitudes[1]) / 2 for sign in (1j, -1j))
     return np.array([forward + backward, abs(forward - backward)])
 
 
