@@ -313,7 +313,7 @@ if __name__ == "__main__":
     for period in (0.001, 0.01):
         print(period, "s: at samples, over time, means over 20 ms", deviations(period, 0.02))
     # The last line is an integral over frequency by Gauss's rule of 12 nodes in 245 and in 379 intervals
-    # that the poles grade, equal to 12 digits; 1.62842083e-8 and 1.67331416e-8 are published, of a covariance.
+    # that the poles grade, equal to 12 digits; published of a covariance: 1.62842083e-8 and 1.67331416e-8.
     published = [[6.331786872e-8, 6.739483245e-8], [1.628420930653e-8, 1.673314563969e-8]]
     np.testing.assert_allclose(behind_mirror(0, held=True), published, rtol=1e-8)
     for period in (0.01, 0.001):
