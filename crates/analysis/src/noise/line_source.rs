@@ -126,7 +126,7 @@ impl LineSource {
     /// aliases, of the modes at each speed if wheels whirl, and the peaks of measured paths of outputs.
     ///
     /// # Errors
-    /// See [`resonant_speeds`].
+    /// See [`OpenLoop::from_scenario`](crate::open_loop::OpenLoop::from_scenario).
     pub fn resonant_speeds(
         &self,
         lines: &LineLoop<'_>,
@@ -162,7 +162,7 @@ impl LineSource {
     /// meet resonances; for wheels those of modes, without aliases.
     ///
     /// # Errors
-    /// See [`resonant_speeds`].
+    /// See [`Self::resonant_speeds`].
     pub fn examined_speeds(&self, lines: &LineLoop<'_>, outputs: &[usize]) -> Result<Vec<f64>, ConfigError> {
         let mut speeds = self.steps().unwrap_or_default();
         if let [first, second, .., last] = speeds[..] {

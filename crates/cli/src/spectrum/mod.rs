@@ -285,16 +285,6 @@ impl SpectrumResults {
         let columns =
             if rows.iter().any(|row| row["least"].is_number()) { &CONTRAST[..] } else { &CONTRAST[..2] };
         print_rows(&rows, columns, self.units);
-        let circle = |own: &EnergyCircle| {
-            let mut row = json!(own);
-            row["output"] = json!(format!("line_of_sight{}", own.line));
-            row
-        };
-        let circles: Vec<Json> = self.report.circles.iter().map(circle).collect();
-        if !circles.is_empty() {
-            say!("  energy of the image within circles, by noise and broadband loads; lines are not in it");
-            print_rows(&circles, &CIRCLES, self.units);
-        }
         if let Some(image) = &self.report.image {
             let factors = [
                 ("detector", Some(image.detector)),
@@ -304,6 +294,21 @@ impl SpectrumResults {
             let factor = |(name, value): (&str, Option<f64>)| Some(format!("{name} {:.4}", value?));
             let factors: Vec<String> = factors.into_iter().filter_map(factor).collect();
             say!("  times {}: together {:.4}", factors.join(", "), image.product);
+        }
+        self.print_circles();
+    }
+
+    /// Prints the circles that contain the energy of an image.
+    fn print_circles(&self) {
+        let circle = |own: &EnergyCircle| {
+            let mut row = json!(own);
+            row["output"] = json!(format!("line_of_sight{}", own.line));
+            row
+        };
+        let circles: Vec<Json> = self.report.circles.iter().map(circle).collect();
+        if !circles.is_empty() {
+            say!("  energy of the image within circles, by noise and broadband loads; lines are not in it");
+            print_rows(&circles, &CIRCLES, self.units);
         }
     }
 
