@@ -183,7 +183,7 @@ fn declare_type(program: &Program<'_>, names: &Names, index: usize) -> Outcome<S
     let mut text = comment(&item.docs, 0);
     match &item.content {
         ItemContent::Struct { fields } => {
-            push(&mut text, format_args!("typedef struct {name} {{\n"));
+            text.push_str("typedef struct {\n");
             for field in fields {
                 text += &comment(&field.docs, 4);
                 if let Some(kind) = program.field_kind(index, &field.name)? {
