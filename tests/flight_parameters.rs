@@ -114,6 +114,8 @@ fn modes_whose_names_run_together_have_parameters_of_their_own() {
     let header = dir.text("out/sat.h");
     let declared = |name: &str| header.matches(&format!("    double {name};\n")).count();
     assert_eq!((declared("detumble_to_sun_to_pass_0"), declared("detumble_to_sun_to_pass_0_")), (1, 1));
+    // Programs that read the header find structs by this form.
+    assert!(header.contains("} sat_step_input;") && !header.contains("typedef struct sat_"), "{header}");
 }
 
 #[test]
